@@ -3,21 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "engine/model/feature.h"
+#include "engine/model/feature_errors.h"
 #include "engine/report/display.h"
 #include "engine/report/signs.h"
 #include "engine/stats/moments.h"
 
 namespace poesy {
 namespace {
-
-/// The directions in the names of a feature's errors. Such a name is the feature's label, a direction, and the limb's
-/// number: "rail_lean_x_1".
-constexpr std::array<std::string_view, 8> kDirections{"", "_x", "_y", "_z", "_lean_x", "_lean_y", "_lift_x", "_lift_y"};
 
 /// A zone as text: "position 0.05 A|B"; "-" if the feature has no such zone.
 std::string zone_text(const std::string& key, double size, const std::string& datums) {
@@ -28,14 +25,12 @@ std::string zone_text(const std::string& key, double size, const std::string& da
 
 /// The number of errors of a feature that are drawn from measured parts. q: index of the feature in the result.
 std::size_t measured_errors(const StoredResult& result, std::size_t q) {
-  const std::string& label = result.drawing->label(q);
-  const std::string limb = result.drawing->names[q].substr(std::min(label.size(), result.drawing->names[q].size()));
-  const auto is_of_feature = [&](const std::string& error) {
-    return std::ranges::any_of(kDirections, [&](std::string_view direction) {
-      return error == fmt::format("{}{}{}", label, direction, limb);
-    });
+  const DrawingResult& found = *result.drawing;
+  const auto is_measured = [&](std::string_view direction) {
+    const std::string name = feature_error_name(found.label(q), direction, found.limb(q));
+    return std::ranges::find(result.measured.names, name) != result.measured.names.end();
   };
-  return static_cast<std::size_t>(std::ranges::count_if(result.measured.names, is_of_feature));
+  return static_cast<std::size_t>(std::ranges::count_if(kFeatureDirections, is_measured));
 }
 
 /// Returns true if the zones of a feature are between two planes, so that their size is no diameter. The zones of a
@@ -45,13 +40,12 @@ bool is_between_planes(const StoredResult& result, std::size_t q) {
   const DrawingResult& found = *result.drawing;
   const std::string& kind = found.kind(q);
   if (kind != "axis" && kind != "point") return kind != "distance";
-  const auto has = [&](std::string_view direction) {
-    const std::string ending = fmt::format("{}_{}", direction, found.limb(q));
-    return std::ranges::any_of(result.factors, [&](const NamedUnit& factor) {
-      return factor.name == found.label(q) + "_" + ending || factor.name == found.label(q) + "_lean_" + ending;
-    });
+  const auto has = [&](FeatureDirection direction) {
+    const std::string name = feature_error_name(found.label(q), poesy::name(direction), found.limb(q));
+    return std::ranges::find(result.factors, name, &NamedUnit::name) != result.factors.end();
   };
-  return has("x") != has("y");
+  using enum FeatureDirection;
+  return (has(x) || has(lean_x)) != (has(y) || has(lean_y));
 }
 
 /// The cell of a zone, with a tolerance frame unless the zone is that of a distance or a clearance.

@@ -9,6 +9,7 @@
 
 #include "engine/base/text.h"
 #include "engine/fits/fit.h"
+#include "engine/model/feature_errors.h"
 #include "models/file/factors.h"
 #include "models/file/general.h"
 #include "models/file/structure.h"
@@ -43,24 +44,24 @@ struct FeaturePart {
 /// An error of a feature: how the feature's middle moves and how the feature rotates, per metre of the error and in the
 /// feature's axes.
 struct FeatureError {
-  std::string_view name;  ///< name: "lean_x"; empty: the feature's own name
-  Vector3 turn;           ///< rotation, rad/m
-  Vector3 shift;          ///< displacement of the middle, m/m
-  bool is_tilt;           ///< true if the error rotates the feature
-  Index axis;             ///< axis of the feature that is in the name: 0, 1, 2
-  std::string text;       ///< description: "leans to x: its far end against its near end, 500 mm apart"
+  FeatureDirection direction;  ///< direction in the name
+  Vector3 turn;                ///< rotation, rad/m
+  Vector3 shift;               ///< displacement of the middle, m/m
+  bool is_tilt;                ///< true if the error rotates the feature
+  Index axis;                  ///< axis of the feature that is in the name: 0, 1, 2
+  std::string text;            ///< description: "leans to x: its far end against its near end, 500 mm apart"
 };
 
 std::string millimetres(double metres) { return fmt::format("{:.6g} mm", 1e3 * metres); }
 
-FeatureError shift(std::string_view name, Index axis, std::string text) {
-  return {name, Vector3::Zero(), Vector3::Unit(axis), false, axis, std::move(text)};
+FeatureError shift(FeatureDirection direction, Index axis, std::string text) {
+  return {direction, Vector3::Zero(), Vector3::Unit(axis), false, axis, std::move(text)};
 }
 
 /// All possible errors of a feature of this kind and size (m), in order.
 std::vector<FeatureError> all_errors(FeatureKind kind, const std::array<double, 2>& size) {
-  const auto lean = [&](std::string_view name, const Vector3& turn, Index axis) {
-    return FeatureError{name,
+  const auto lean = [&](FeatureDirection direction, const Vector3& turn, Index axis) {
+    return FeatureError{direction,
                         turn / size[0],
                         Vector3::Zero(),
                         true,
@@ -68,9 +69,9 @@ std::vector<FeatureError> all_errors(FeatureKind kind, const std::array<double, 
                         fmt::format("leans to {}: its far end against its near end, {} apart",
                                     kAxisLetters[static_cast<std::size_t>(axis)], millimetres(size[0]))};
   };
-  const auto lift = [&](std::string_view name, const Vector3& turn, Index axis) {
+  const auto lift = [&](FeatureDirection direction, const Vector3& turn, Index axis) {
     const double across = size[static_cast<std::size_t>(axis)];
-    return FeatureError{name,
+    return FeatureError{direction,
                         2.0 * turn / across,
                         Vector3::Zero(),
                         true,
@@ -82,24 +83,27 @@ std::vector<FeatureError> all_errors(FeatureKind kind, const std::array<double, 
   const Vector3 y = Vector3::UnitY();
   switch (kind) {
     case FeatureKind::axis:
-      return {shift("x", 0, "its middle is off along x"), shift("y", 1, "its middle is off along y"),
-              lean("lean_x", y, 0), lean("lean_y", -x, 1)};
+      return {shift(FeatureDirection::x, 0, "its middle is off along x"),
+              shift(FeatureDirection::y, 1, "its middle is off along y"), lean(FeatureDirection::lean_x, y, 0),
+              lean(FeatureDirection::lean_y, -x, 1)};
     case FeatureKind::rectangle:
     case FeatureKind::round:
-      return {shift("z", 2, "is off along its normal"), lift("lift_x", -y, 0), lift("lift_y", x, 1)};
+      return {shift(FeatureDirection::z, 2, "is off along its normal"), lift(FeatureDirection::lift_x, -y, 0),
+              lift(FeatureDirection::lift_y, x, 1)};
     case FeatureKind::point:
-      return {shift("x", 0, "is off along x"), shift("y", 1, "is off along y"), shift("z", 2, "is off along z")};
+      return {shift(FeatureDirection::x, 0, "is off along x"), shift(FeatureDirection::y, 1, "is off along y"),
+              shift(FeatureDirection::z, 2, "is off along z")};
     case FeatureKind::distance:
       break;
   }
-  return {shift("", 0, "is too long")};
+  return {shift(FeatureDirection::too_long, 0, "is too long")};
 }
 
 /// The text ", where y is (0, 0, -1) at home", which states an axis of a feature in the base frame. Empty if this axis
 /// is the base's axis of the same name.
 std::string axis_text(const FeatureError& error, const Matrix3& axes) {
   const Vector3 way = axes.col(error.axis);
-  if (error.name.empty() || (way - Vector3::Unit(error.axis)).norm() < kSameAxis) return {};
+  if (error.direction == FeatureDirection::too_long || (way - Vector3::Unit(error.axis)).norm() < kSameAxis) return {};
   const Vector3 shown = (way.array().abs() < kSameAxis).select(0.0, way);
   return fmt::format(", where {} is {} at home", kAxisLetters[static_cast<std::size_t>(error.axis)],
                      triple_text(shown));
@@ -111,7 +115,7 @@ std::vector<FeatureError> errors_of(const FeatureLines& lines, const Feature& fe
   std::vector<FeatureError> all = all_errors(feature.kind, feature.size);
   const bool only_turns = feature.orientation && !feature.location;
   std::erase_if(all, [&](const FeatureError& error) {
-    const bool is_across = feature.one_direction && !error.name.ends_with(lines.along);
+    const bool is_across = feature.one_direction && !name(error.direction).ends_with(lines.along);
     return is_across || (only_turns && !error.is_tilt);
   });
   return all;
@@ -286,9 +290,8 @@ class FeatureBuilder {
     feature.frame = part.frame;
     for (const FeatureError& error : errors_of(lines, feature)) {
       (error.is_tilt ? feature.tilt : feature.middle).emplace_back(mechanism_.factors.size());
-      std::string name = lines.name;
-      if (!error.name.empty()) name += "_" + std::string(error.name);
-      Factor factor{name + "_" + number, Dimension::length, feature.limb, part.frame,
+      Factor factor{feature_error_name(lines.name, name(error.direction), feature.limb), Dimension::length,
+                    feature.limb, part.frame,
                     fmt::format("{} of limb {} {}{}", lines.name, limb.label, error.text, axis_text(error, at.axes))};
       add_error(std::move(factor), terms(error, at, part, first + copy), {lines.name, lines.key, lines.place},
                 mechanism_);
