@@ -323,13 +323,20 @@ Table stages_table(const Result& found) {
   return table;
 }
 
-/// Fills a table with predicted costs and their relative changes from the cost of the tolerances found. at: the first
-/// column, which says to what each cost belongs.
+/// The change of a predicted cost from that of the tolerances found, to a hundredth of a percent. Less than that is the
+/// rounding of the search.
+double change_of_cost(double predicted, double found) {
+  constexpr double kHundredths = 1e4;
+  return std::round(kHundredths * (predicted / found - 1.0)) / kHundredths + 0.0;
+}
+
+/// Fills a table with predicted costs and their changes from the cost of the tolerances found.
 void add_costs(const Result& found, std::span<const double> costs, FilledColumn at, Table& table) {
   table.notes.emplace_back("predicted, not certified; change: from the cost of the tolerances found");
   fill(table, positions(costs.size()),
        {std::move(at), cost_column("cost", "cost", costs), {percent_column("change", "change"), [&](std::size_t k) {
-                                                              return percent_cell(costs[k] / found.total_cost - 1.0);
+                                                              return percent_cell(
+                                                                  change_of_cost(costs[k], found.total_cost));
                                                             }}});
 }
 

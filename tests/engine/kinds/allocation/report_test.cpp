@@ -186,6 +186,13 @@ TEST_F(AllocationReport, PrintsPlacesWithMinusSigns) {
   EXPECT_EQ(column(table("allocation_limits"), "used_place"), Texts{"z -203 mm, beta 21.5 deg, gamma -43 deg"});
 }
 
+TEST_F(AllocationReport, TakesRoundingForNoChangeOfCost) {
+  const double cost = found().total_cost;
+  found().curve_yield_cost = {{3}, {0.9 * cost, cost * (1.0 - 1.2e-6), cost * (1.0 + 2e-16)}};
+  const Texts changes = column(table("cost_of_yield"), "change");
+  EXPECT_EQ(changes, (Texts{"-10", "0", "0"}));
+}
+
 TEST_F(AllocationReport, TellsTheWayAndWhatElseWouldCost) {
   EXPECT_EQ(text_of(table("stages"), kUnlimitedWidth),
             "How the tolerances were found, step by step\n"
