@@ -25,6 +25,20 @@ std::string with_words(std::string_view text) {
   return words;
 }
 
+std::string typographic(std::string_view text) {
+  constexpr std::string_view kMinus = "\u2212";
+  std::string printed(text);
+  replace(printed, "->", "\u2192");
+  replace(printed, "+-", kPlusMinus);
+  const auto is_digit = [&](std::size_t at) { return at < printed.size() && printed[at] >= '0' && printed[at] <= '9'; };
+  for (std::size_t at = printed.find('-'); at != std::string::npos; at = printed.find('-', at + 1)) {
+    const bool begins = at == 0 || printed[at - 1] == ' ' || printed[at - 1] == '(';
+    const bool is_of_power = at > 1 && printed[at - 1] == 'e' && is_digit(at - 2);
+    if ((begins || is_of_power) && is_digit(at + 1)) printed.replace(at, 1, kMinus);
+  }
+  return printed;
+}
+
 std::vector<std::string> frame_boxes(std::string_view sign, std::string zone, std::string_view datums) {
   std::vector<std::string> boxes{std::string(sign), std::move(zone)};
   while (!datums.empty()) {

@@ -17,6 +17,10 @@ inline constexpr std::string_view kPlusMinus = "\u00b1";        ///< The sign be
 /// The text with words in place of its signs: "position", "dia 0.02 mm", "+-0.01 mm".
 std::string with_words(std::string_view text);
 
+/// A text for the terminal with the signs of print: "→" for "->", "±" for "+-", and a minus sign before numbers ("−80
+/// mm"), at which a line does not break.
+std::string typographic(std::string_view text);
+
 /// Replaces signs by words in all cells of these tables.
 void use_words(std::span<Table> tables);
 

@@ -73,16 +73,7 @@ std::vector<Table> calibration_result_tables(const StoredResult& result, const T
 SolveTally tally(const StoredResult&) { return {"", {"all errors"}, 1, {SolveCounts()}}; }
 
 /// Converts a text for the terminal to a sentence for the page: "to type in: 2 +- 0.1 mm" to "To type in: 2 ± 0.1 mm."
-/// An arrow "->" becomes "→".
-std::string sentence(std::string text) {
-  const std::pair<std::string_view, std::string_view> signs[] = {{"->", "\u2192"}, {"+-", kPlusMinus}};
-  for (const auto& [plain, sign] : signs) {
-    for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain)) {
-      text.replace(at, plain.size(), sign);
-    }
-  }
-  return as_sentence(std::move(text));
-}
+std::string sentence(std::string_view text) { return as_sentence(typographic(text)); }
 
 StudyWords words(const StoredResult& result) {
   StudyWords made{.from_tables = true, .samples = "measurements"};

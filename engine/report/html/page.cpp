@@ -217,7 +217,7 @@ std::string html_table(const Table& table) {
     if (!column.only_text) html += column_heading(column);
   }
   html += "</tr></thead>\n<tbody>\n" + body_html(table) + "</tbody></table></div>\n";
-  for (const std::string& note : table.notes) html += element("p", note, "class=\"note\"") + "\n";
+  for (const std::string& note : table.notes) html += element("p", typographic(note), "class=\"note\"") + "\n";
   return html;
 }
 

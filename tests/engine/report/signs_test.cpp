@@ -32,5 +32,14 @@ TEST(SignsOfADrawing, AreReplacedInAllCells) {
   EXPECT_EQ(tables[0].rows[0][0].text, "parallelism");
 }
 
+TEST(Signs, OfPrintReplaceThoseOfAKeyboard) {
+  EXPECT_EQ(typographic("endstop_1 0.0000 -> -0.3890 +- 0.0233 mm"),
+            "endstop_1 0.0000 \u2192 \u22120.3890 \u00b1 0.0233 mm");
+  EXPECT_EQ(typographic("pose 9 (z -17.5 mm)"), "pose 9 (z \u221217.5 mm)");
+  EXPECT_EQ(typographic("to within 2.8e-10"), "to within 2.8e\u221210");
+  EXPECT_EQ(typographic("-5 (-5)"), "\u22125 (\u22125)");
+  EXPECT_EQ(typographic("limbs 1-3, first-order, --yes, -o, a -"), "limbs 1-3, first-order, --yes, -o, a -");
+}
+
 }  // namespace
 }  // namespace poesy
