@@ -71,6 +71,7 @@ class PageTest(unittest.TestCase):
             self.browser.run("dispatchEvent(new Event('beforeprint'))")
             self.assertLessEqual(self.browser.printed_width(PAPER), PAPER)
             self.assertEqual(self.small_on_paper(), [])
+            self.assertEqual(self.loose_notes(), [])
 
     def check_silent(self, page):
         self.assertEqual(self.browser.console(), [])
@@ -82,6 +83,12 @@ class PageTest(unittest.TestCase):
         return self.browser.run(
             """return [...document.querySelectorAll(".table-wrap")].filter((wrap) => wrap.scrollWidth > wrap.clientWidth + 1)
               .map((wrap) => wrap.dataset.table)""")
+
+    def loose_notes(self):
+        """Notes that a page break may separate from their table, where the page is printed."""
+        return self.browser.run(
+            """return [...document.querySelectorAll(".table-wrap ~ .note")]
+              .filter((note) => getComputedStyle(note).breakBefore !== "avoid").map((note) => note.textContent)""")
 
     def small_on_paper(self):
         """Texts below 8 points where the page is printed, but for the indices of names."""
