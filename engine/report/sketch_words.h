@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include "engine/model/model.h"
 #include "engine/model/sketch.h"
@@ -20,7 +21,11 @@ std::string name_words(const SketchedJoint& joint);
 /// joint 1". Joints are counted as in SketchedError.
 std::string between_words(const Sketch& sketch, std::size_t limb, std::size_t after, std::size_t before);
 
-/// The axis of an error: "rotation about x of frame 4", "displacement along x of the base".
-std::string axis_words(const Sketch& sketch, const SketchedError& error);
+/// How an error displaces its part: "displacement along x of the base", "rotation about x of frame 4, (0.6, 0, 0.8) in
+/// the base at home". The direction in the base is left out if it is that of the base's own axis. An error of a feature
+/// turns or moves the feature: "leans to x, where x is (0.6, 0, 0.8) at home". sketch: at home. name, description:
+/// those of the error in ModelDescription::factors.
+std::string axis_words(const Sketch& sketch, const SketchedError& error, std::string_view name,
+                       std::string_view description);
 
 }  // namespace poesy

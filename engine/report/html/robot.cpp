@@ -161,10 +161,9 @@ std::string part_words(const Sketch& sketch, const RankedPart& part) {
   return fmt::format("limb {} {}", part.limb + 1, between_words(sketch, part.limb, part.after, part.before));
 }
 
-std::string error_words(const Sketch& sketch, std::size_t position) {
-  const SketchedError& error = sketch.errors[position];
+std::string error_words(const Sketch& sketch, const SketchedError& error, const Factor& factor) {
   return fmt::format("limb {}, {}: {}", error.limb + 1, between_words(sketch, error.limb, error.after, error.before),
-                     axis_words(sketch, error));
+                     axis_words(sketch, error, factor.name, factor.description));
 }
 
 /// The description of a picture in words, for screen readers.
@@ -272,7 +271,7 @@ Robot robot_figure(const StoredResult& result, const Model& model, const std::ve
     const Factor& factor = model.description().factors[one.factor];
     const SketchedError& error = home.errors[one.factor];
     const bool sized = result.factor_sigma.size() == result.factors.size();
-    robot.errors.push_back({factor.name, error_words(home, one.factor), frame_number(home, error), error.axis,
+    robot.errors.push_back({factor.name, error_words(home, error, factor), frame_number(home, error), error.axis,
                             error.turns,
                             sized ? response_text(result.factors[one.at], result.factor_sigma[one.at]) : "",
                             std::isnan(one.share) ? "" : percent_text(one.share)});
@@ -294,7 +293,7 @@ Table errors_table(const StoredResult& result, const Sketch& sketch, std::span<c
   Table table{.name = "where_errors_are",
               .caption = "Where each error is",
               .columns = {text_column("error", "error"), text_column("limb", "limb", 1), text_column("part", "part", 2),
-                          text_column("axis", "axis", 3)}};
+                          text_column("axis", "motion", 3)}};
   const bool has_words =
       std::ranges::any_of(errors, [&](const RobotError& one) { return !own_words(result, one.at).empty(); });
   if (has_words) table.columns.insert(table.columns.begin() + 1, text_column("words", "what it is"));
@@ -307,7 +306,8 @@ Table errors_table(const StoredResult& result, const Sketch& sketch, std::span<c
     if (has_words) row.push_back(text_cell(own_words(result, one.at)));
     row.push_back(text_cell(std::to_string(error.limb + 1)));
     row.push_back(text_cell(between_words(sketch, error.limb, error.after, error.before)));
-    row.push_back(text_cell(axis_words(sketch, error)));
+    row.push_back(
+        text_cell(axis_words(sketch, error, result.factors[one.at].name, result.factors[one.at].description)));
     if (shared) row.push_back(percent_cell(one.share));
   }
   table.notes.emplace_back(
