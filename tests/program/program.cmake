@@ -43,6 +43,7 @@ program_test(growing_errors regression)
 program_test(leading_response unit)
 program_test(calibrate regression)
 program_test(calibrate_refusals unit)
+program_test(calibrate_report unit)
 program_test(calibrated_study statistical)
 program_test(calibrated_allocation statistical)
 program_test(calibrated_sensitivity regression)
@@ -51,7 +52,7 @@ program_test(own_responses regression)
 program_test(relative_responses statistical)
 program_test(branched statistical)
 program_test(load regression)
-set_property(TEST program.calibrate program.calibrate_refusals program.calibrated_study program.calibrated_allocation
+set_property(TEST program.calibrate program.calibrate_refusals program.calibrate_report program.calibrated_study program.calibrated_allocation
              program.calibrated_sensitivity program.drawing program.compare program.flatness
              program.growing_errors program.leading_response program.allocation_over_poses program.mechanism_file
              program.relative_responses program.shared_drive

@@ -257,10 +257,22 @@ class Calibration {
 
   void set_values(CalibrationResult& result) const {
     using Value = Array<double, axis::Value>;
+    using Position = Array<std::uint64_t, axis::Value>;
+    result.value_row = Position({machine_.file.values.size()});
+    result.value_to = result.value_row;
     for (const MachineValue& value : machine_.file.values) {
+      const bool is_distance = value.column == MachineColumn::distance;
+      result.value_row(result.values.size()) = value.row;
+      result.value_to(result.values.size()) = is_distance ? value.other : value.row;
       result.values.push_back(machine_.file.name_of(value));
       result.value_units.emplace_back(si_unit(dimension_of(value)));
-      if (value.column == MachineColumn::distance) ++result.distances;
+      if (is_distance) ++result.distances;
+    }
+    result.rows = machine_.file.names;
+    const PoseSet& poses = machine_.measured_at;
+    result.measured_at = Array<double, axis::Measurement, axis::Coordinate>({poses.size(), poses.coordinates()});
+    for (std::size_t m = 0; m < poses.size(); ++m) {
+      std::ranges::copy(poses[PoseIndex(m)], result.measured_at.row(m).begin());
     }
     const double known = weights_.is_noise ? 1.0 : kNaN;
     result.measured = array_of<Value>(measurement_.measured());

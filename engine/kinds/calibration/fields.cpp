@@ -44,6 +44,9 @@ const Group<Result> kCalibration{
      {"has_prior", &Result::has_prior, "1", "1: tolerances count as knowledge"},
      {"noise_is_known", &Result::noise_is_known, "1", "0: all noise is 0, so there are no intervals"},
      {"sd_is_estimated", &Result::sd_is_estimated, "1", "1: the noise is known up to one factor"},
+     {"measured_at", &Result::measured_at, kMixedUnit, "Poses of the rows of the measurements, in their coordinates"},
+     {"value_row", &Result::value_row, "1", "Position of the value's row in the measurements"},
+     {"value_to", &Result::value_to, "1", "Position of the row to which a distance is measured; of others, their own"},
      {"measured", &Result::measured, kValueUnit, "Measured values"},
      {"value_sd", &Result::value_sd, kValueUnit, "Standard deviations of the values"},
      {"residual", &Result::residual, kValueUnit, "Measured less fitted values"},
@@ -109,6 +112,7 @@ void add_axes(ResultBuilder& result, const Result& found) {
   result.add_axis("fitted", fitted, {"1", "Name of the fitted error"});
   result.add_axis("with_fitted", fitted, {"1", "The same, for columns of a matrix"});
   result.add_axis("direction", axis_numbers(found.singular_values.size()), {"1", "Direction, by its singular value"});
+  result.add_axis("measurement", found.rows, {"1", "Name of the row of the measurements"});
   result.add_axis("value", found.values, {"1", "Name of the measured value"});
   result.add_axis("frame_part", found.frame_parts, {"1", "Number of the frame and the target"});
   result.add_axis("moved", moved_names(), {"1", "Component of the displacement"});
@@ -138,11 +142,9 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
     }
   }
   add_names(result, study, factors);
-  if (has_next(found)) {
-    std::vector<std::string> coordinates;
-    for (const PoseCoordinate& own : study.model().pose_coordinates) coordinates.push_back(own.name);
-    result.add_axis("coordinate", coordinates, {"1", "Coordinate of a pose"});
-  }
+  std::vector<std::string> coordinates;
+  for (const PoseCoordinate& own : study.model().pose_coordinates) coordinates.push_back(own.name);
+  result.add_axis("coordinate", coordinates, {"1", "Coordinate of a pose"});
   add_axes(result, found);
   write_group(result, kCalibration, found);
   add_texts(result, found);
@@ -165,13 +167,19 @@ void read(const h5::File& file, StoredResult& result) {
                              read_along<std::string>(file, "/calibration/fitted_unit", {"fitted"}));
   found.values = file.read<std::string>("/value");
   found.value_units = read_along<std::string>(file, "/calibration/value_unit", {"value"});
+  found.rows = file.read<std::string>("/measurement");
   found.frame_parts = file.read<std::string>("/frame_part");
   const std::vector<std::string> drives = file.read<std::string>("/drive");
   for (const std::string& drive : drives) found.drives.push_back({drive, std::string(kMixedUnit)});
-  for (const auto* names : std::array<const std::vector<std::string>*, 3>{&found.values, &found.frame_parts, &drives}) {
+  for (const auto* names :
+       std::array<const std::vector<std::string>*, 4>{&found.values, &found.rows, &found.frame_parts, &drives}) {
     check_names(*names, "/calibration");
   }
   check_names(names_of(found.fitted), "/fitted");
+  for (const auto* positions : {&found.value_row, &found.value_to}) {
+    const bool is_known = std::ranges::all_of(*positions, [&](std::uint64_t at) { return at < found.rows.size(); });
+    if (!is_known) throw h5::Error("/calibration has a value of an unknown row");
+  }
   if (file.exists("/calibration/next")) read_fields(file, "/calibration/next", kNext.fields, found);
   if (file.exists("/calibration/controller")) {
     read_fields(file, "/calibration/controller", kController.fields, found);

@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "engine/kinds/calibration/figures.h"
 #include "engine/kinds/calibration/kind.h"
+#include "engine/kinds/calibration/residuals.h"
 #include "engine/kinds/calibration/result.h"
 #include "engine/kinds/calibration/words.h"
 #include "engine/report/display.h"
@@ -67,6 +69,7 @@ std::vector<Table> calibration_result_tables(const StoredResult& result, const T
   std::vector<Table> tables{fitted_table(found)};
   if (!found.frame_parts.empty()) tables.push_back(frame_table(found));
   if (!found.gain.empty()) tables.push_back(next_table(result, found));
+  tables.push_back(residuals_table(result));
   return tables;
 }
 
@@ -94,9 +97,10 @@ Answer answer(const StoredResult& result) {
   return lines;
 }
 
-void add_page(const StoredResult&, std::span<const Table> tables, Page& page) {
+void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
   Section& section = page.add_section("fitted", "The fitted errors");
-  for (const Table& table : tables) section.table(table);
+  for (const char* name : {"fitted", "frame", "next"}) section.table(tables, name);
+  add_calibration_figures(result, tables, page);
 }
 
 Comparable comparable(const StoredResult& result, const StoredResult&) {

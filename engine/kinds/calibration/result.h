@@ -16,6 +16,7 @@ using Fitted = Axis<"fitted">;            ///< Fitted errors.
 using OtherFitted = Axis<"with_fitted">;  ///< Fitted errors as the second axis of a matrix.
 using Direction = Axis<"direction">;      ///< Directions of fitted errors, ordered by their singular values.
 using Value = Axis<"value">;              ///< Measured values.
+using Measurement = Axis<"measurement">;  ///< Rows of the table of measurements.
 using FramePart = Axis<"frame_part">;     ///< Numbers that place the measuring frame and the target.
 using Moved = Axis<"moved">;              ///< Components of the platform's displacement.
 using Drive = Axis<"drive">;              ///< Drives.
@@ -47,8 +48,15 @@ struct CalibrationResult {
   /// 1 if only the ratios of the noise are known and its level was estimated from the residuals, otherwise 0.
   std::uint64_t sd_is_estimated = 0;
 
-  std::vector<std::string> values;           ///< names of the measured values
-  std::vector<std::string> value_units;      ///< SI units of the measured values
+  std::vector<std::string> values;       ///< names of the measured values
+  std::vector<std::string> value_units;  ///< SI units of the measured values
+  /// Position of each value's row in the table of measurements.
+  Array<std::uint64_t, axis::Value> value_row;
+  /// Position of the row to which a distance is measured; for other values that of their own row.
+  Array<std::uint64_t, axis::Value> value_to;
+  std::vector<std::string> rows;  ///< names of the rows of the table of measurements
+  /// The pose of each row, in its coordinates, SI.
+  Array<double, axis::Measurement, axis::Coordinate> measured_at;
   Array<double, axis::Value> measured;       ///< measured values
   Array<double, axis::Value> value_sd;       ///< standard deviations of the measured values
   Array<double, axis::Value> residual;       ///< measured minus fitted values
@@ -103,6 +111,11 @@ struct CalibrationResult {
   std::string file_text;    ///< content of that table
   std::string file_sha256;  ///< SHA-256 hash of that content
 };
+
+/// True if a value is a distance between the platform at two poses.
+inline bool is_distance(const CalibrationResult& found, std::size_t value) {
+  return found.value_to(value) != found.value_row(value);
+}
 
 /// The names on the axis `moved`: components of a displacement.
 std::vector<std::string> moved_names();

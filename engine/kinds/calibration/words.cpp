@@ -112,7 +112,17 @@ bool is_contradicted(const CalibrationResult& found) {
   return found.noise_is_known != 0 && found.sd_is_estimated == 0 && found.dof > 0 && found.p < kContradiction;
 }
 
-std::string unit_of_component(std::size_t component) { return component < kAngles ? "rad" : "m"; }
+/// True if two components of the remaining displacement are equal at all poses, but for rounding.
+bool are_same(const CalibrationResult& found, std::size_t one, std::size_t other) {
+  const auto same = [](double a, double b) {
+    return std::abs(a - b) <= kLeftRounding || (std::isnan(a) && std::isnan(b));
+  };
+  for (std::size_t m = 0; m < found.left_mean.length<axis::Pose>(); ++m) {
+    if (!same(found.left_mean(m, one), found.left_mean(m, other))) return false;
+    if (!same(found.left_sd(m, one), found.left_sd(m, other))) return false;
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -163,16 +173,26 @@ std::vector<std::string> estimate_notes(const CalibrationResult& found) {
   return notes;
 }
 
+std::vector<LeftComponent> left_components(const CalibrationResult& found) {
+  const std::vector<std::string> moved = moved_names();
+  std::vector<LeftComponent> list;
+  for (std::size_t c = 0; c < moved.size(); ++c) {
+    const double rms = left_rms(found, c);
+    const bool is_of_tool = c >= 2 * kAngles;
+    if (!(rms > kLeftRounding) || (is_of_tool && are_same(found, c, c - kAngles))) continue;
+    list.push_back({c, {moved[c], c < kAngles ? "rad" : "m"}, rms});
+  }
+  return list;
+}
+
 std::vector<std::string> left_notes(const CalibrationResult& found) {
   std::vector<std::string> parts;
   std::vector<std::string> unmeasured;
-  const std::vector<std::string> moved = moved_names();
   const std::size_t poses = found.left_mean.length<axis::Pose>();
-  for (std::size_t c = 0; c < 2 * kAngles; ++c) {
-    const double rms = left_rms(found, c);
-    if (!(rms > 1e-12)) continue;
-    parts.push_back(moved[c] + " " + response_text({moved[c], unit_of_component(c)}, rms));
-    if (!is_measured(found, moved[c]) && !is_measured(found, "tip_" + moved[c])) unmeasured.push_back(moved[c]);
+  for (const auto& [component, named, rms] : left_components(found)) {
+    if (component >= 2 * kAngles) continue;
+    parts.push_back(named.name + " " + response_text(named, rms));
+    if (!is_measured(found, named.name) && !is_measured(found, "tip_" + named.name)) unmeasured.push_back(named.name);
   }
   if (parts.empty()) return {};
   std::vector<std::string> notes;

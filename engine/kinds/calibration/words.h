@@ -14,6 +14,20 @@ std::string measured_text(const CalibrationResult& found);
 std::string residual_text(const CalibrationResult& found);
 /// Sentences that name the estimates that are not determined, that are correlated, or that are below the noise.
 std::vector<std::string> estimate_notes(const CalibrationResult& found);
+/// What remains below this is rounding, m or rad.
+inline constexpr double kLeftRounding = 1e-12;
+
+/// A component of the displacement that remains after calibration.
+struct LeftComponent {
+  std::size_t component;  ///< position on the axis `moved`
+  NamedUnit named;        ///< name and SI unit
+  double rms;             ///< root mean square over the poses, including the uncertainty, SI
+};
+
+/// The components that remain. Components of rounding size are left out, and those of the tool point if they are those
+/// of P, because there is no tool or the platform does not turn.
+std::vector<LeftComponent> left_components(const CalibrationResult& found);
+
 /// Sentences about the displacement that remains after calibration.
 std::vector<std::string> left_notes(const CalibrationResult& found);
 /// A text on the probability that the machine keeps the limits; empty without limits.
