@@ -85,6 +85,15 @@ def add_fields(page, key, rows, poses, coordinate_count):
                    {"label": "Local index", "unit": "mm per mm", "rows": errors(rows), "value": page.array(field)}]}
 
 
+def add_plane(page):
+    """Poses of a plane, so that one of three coordinates is the same for all."""
+    columns = coordinates(page, 30, 3)
+    columns[1]["value"] = page.array(np.full(30, 5.0))
+    page.figures["workspace_plane"] = {
+        "type": "workspace", "coordinates": columns,
+        "fields": [{"label": "Signed change", "unit": "mm", "value": page.array(page.random.normal(0, 1, 30))}]}
+
+
 def add_lines(page):
     samples = np.geomspace(100, 20000, 12).astype(int)
     def series(label, style="solid"):
@@ -172,6 +181,7 @@ def add_all(page):
     add_fields(page, "small", 25, 158, 3)
     add_fields(page, "large", 71, 1738, 4)
     add_fields(page, "flat", 2, 12, 1)
+    add_plane(page)
     add_lines(page)
     add_scatter(page)
     add_what_if(page)

@@ -145,6 +145,16 @@ class Figures(PageTest):
         self.assertEqual(still, count)
         self.assertTrue(0 < faint < count, (faint, count))
 
+    def test_a_coordinate_that_does_not_vary_is_left_out(self):
+        self.open(figures_page(WEB))
+        texts = self.browser.run("""const figure = document.querySelector("[data-figure=workspace_plane]");
+            const views = [...figure.querySelectorAll(".views svg")];
+            return [figure.querySelectorAll("[type=range]").length, ...views.map((svg) => svg.textContent)]""")
+        self.assertEqual(len(texts), 2, "one view, without a slider")
+        self.assertEqual(texts[0], 0)
+        self.assertIn("z [mm]", texts[1])
+        self.assertNotIn("alpha", texts[1])
+
     def test_what_is_0_everywhere_is_not_drawn_below_0(self):
         self.open(figures_page(WEB))
         legend, axis = self.browser.run(

@@ -9,13 +9,14 @@ const FAINT = 0.12;
 const DOT_EDGE = { stroke: "var(--ink)", strokeOpacity: 0.4, strokeWidth: 0.6 };
 
 function workspace(figure, data) {
-  const count = values(data.coordinates[0].value).length;
+  const coordinates = varying(data.coordinates);
+  const count = values(coordinates[0].value).length;
   const numberOf = (m) => (data.numbers ? values(data.numbers)[m] : m);
   let field = data.fields[0];
   let item = firstItem(field);
   let slice = 0; // 0: all poses; k: those in the k-th of SLICES overlapping parts of the third coordinate's range
   let say = () => {}; // writes beside the slider which slice it is
-  const axes = data.coordinates.slice(0, 3).map((_, k) => k);
+  const axes = coordinates.slice(0, 3).map((_, k) => k);
   const view = { ...START_VIEW };
 
   const place = new Place(figure, (width) => {
@@ -43,15 +44,15 @@ function workspace(figure, data) {
 
   /// The ends of the chosen slice, as values of the third coordinate.
   function sliceEnds() {
-    const [low, high] = d3.extent(values(data.coordinates[axes[2]].value));
+    const [low, high] = d3.extent(values(coordinates[axes[2]].value));
     const step = (high - low) / SLICES;
     return slice === 0 ? [low, high] : [low + (slice - 1.5) * step, low + (slice + 0.5) * step];
   }
 
   function sliceWords() {
-    const { name, unit } = data.coordinates[axes[2]];
+    const { name, unit } = coordinates[axes[2]];
     if (slice === 0) return `all ${name}`;
-    const [low, high] = d3.extent(values(data.coordinates[axes[2]].value));
+    const [low, high] = d3.extent(values(coordinates[axes[2]].value));
     const [from, to] = sliceEnds();
     return `${name} from ${number(Math.max(from, low))} to ${withUnit(number(Math.min(to, high)), unit)}`;
   }
@@ -99,8 +100,8 @@ function workspace(figure, data) {
 
   /// Which three of more coordinates are shown.
   function axisControls() {
-    if (data.coordinates.length <= 3) return [];
-    const names = data.coordinates.map(({ name }) => name);
+    if (coordinates.length <= 3) return [];
+    const names = coordinates.map(({ name }) => name);
     return axes.map((k) => {
       const control = select(`Axis ${k + 1}`, names, (i) => {
         axes[k] = i;
@@ -124,9 +125,9 @@ function workspace(figure, data) {
       m,
       value: array[m],
       colour: colour(array[m]) ?? "var(--unknown)",
-      at: axes.map((k) => values(data.coordinates[k].value)[m]),
+      at: axes.map((k) => values(coordinates[k].value)[m]),
     }));
-    const chosen = axes.map((k) => data.coordinates[k]);
+    const chosen = axes.map((k) => coordinates[k]);
     const size = width < 620 ? width : Math.floor((width - 24) / 2);
     const pairs = d3.cross(d3.range(axes.length), d3.range(axes.length)).filter(([a, b]) => a < b);
     const text = ({ m, value }) =>
@@ -185,6 +186,12 @@ const AXIS_STARTS = [
   [-0.5, -0.5, -0.5],
   [-0.5, 0.5, -0.5],
 ];
+
+/// The coordinates in which the poses differ, or the first one if they differ in none.
+function varying(coordinates) {
+  const list = coordinates.filter(({ value }) => d3.min(values(value)) < d3.max(values(value)));
+  return list.length ? list : coordinates.slice(0, 1);
+}
 
 function dotSize(count) {
   return Math.max(1.6, Math.min(4.5, 90 / Math.sqrt(count)));
