@@ -344,6 +344,21 @@ class Calibrate(ProgramTest):
         np.testing.assert_allclose(found["residual"], 0.0, atol=1e-11)
         np.testing.assert_allclose(found["estimate"], [estimate[name] for name in names], rtol=0, atol=2e-8)
 
+    def test_numbers_that_the_controller_had(self):
+        """What is typed in goes from the value with the present corrections to the new one."""
+        _, without, done = self.calibrated("delta-measured.toml", "delta-heights.csv")
+        np.testing.assert_array_equal(without["controller/present"], without["controller/nominal"])
+        self.assertIn("delta_radius 95.0000 -> 95.1139", " ".join(done.stdout.decode().split()))
+        present = 'present = { radius = "0.25 mm", rods = "-0.1 mm" }\nnext = 5'
+        names, found, done = self.calibrated("delta-measured.toml", "delta-heights.csv", [("next       = 5", present)])
+        shown = " ".join(done.stdout.decode().split())
+        np.testing.assert_array_equal(found["controller/nominal"], without["controller/nominal"])
+        np.testing.assert_allclose(found["controller/present"][:2], without["controller/nominal"][:2] + [-0.1e-3, 0.25e-3],
+                                   rtol=0, atol=1e-15)
+        radius = 95e-3 + found["estimate"][names.index("radius")]
+        self.assertIn(f"delta_radius 95.2500 -> {1e3 * radius:.4f}", shown)
+        self.assertIn("diagonal_rod 216.9000 -> ", shown)
+
     def test_no_noise(self):
         """All noise 0: equal weights, the same estimates as with equal noise, and no intervals."""
         text = (self.folder / "delta-heights.csv").read_text()

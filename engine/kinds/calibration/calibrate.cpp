@@ -168,12 +168,17 @@ class Calibration {
   bool has_prior() const { return table_.prior == PriorKnowledge::tolerances; }
   std::size_t places() const { return numbers_of(frame()) + numbers_of(target()); }
 
-  /// The measured poses, with the drives that the controller's present parameters command there.
+  /// The fitted numbers that the controller corrected while the machine was measured, SI.
+  std::vector<double> present() const {
+    return table_.present.empty() ? std::vector(table_.fit.size(), 0.0) : table_.present;
+  }
+
+  /// The measured poses. The drives are those of the controller's present parameters.
   std::vector<calibration::MeasuredPose> measured_poses() const {
     std::vector<calibration::MeasuredPose> poses;
-    Vector present = Vector::Zero(position(table_.fit.size()));
-    for (std::size_t j = 0; j < table_.present.size(); ++j) present(position(j)) = table_.present[j];
-    const Vector errors = columns_.directions.F * present;
+    const std::vector<double> corrected = present();
+    const Vector errors =
+        columns_.directions.F * Eigen::Map<const Vector>(corrected.data(), position(corrected.size()));
     for (std::size_t row = 0; row < machine_.measured_at.size(); ++row) {
       const std::vector<double> pose = pose_of(machine_.measured_at, row);
       const auto drive_at = errors.isZero(0.0) ? std::optional(pose) : correction_.drive_at(pose, errors);
@@ -307,11 +312,13 @@ class Calibration {
     const std::size_t k = table_.fit.size();
     std::vector<double> estimate(fit_.theta.begin(), fit_.theta.end());
     std::vector<double> nominal;
+    std::vector<double> before;
     std::vector<double> value;
     std::vector<double> sd;
     for (const TypedNumber& typed : machine_.typed) {
       result.typed.push_back({typed.name, std::string(si_unit(typed.dimension)), typed.text});
       nominal.push_back(typed.value(std::vector(k, 0.0)));
+      before.push_back(typed.value(present()));
       value.push_back(typed.value(estimate));
       Vector gradient(position(k));
       for (std::size_t j = 0; j < k; ++j) {
@@ -326,6 +333,7 @@ class Calibration {
       sd.push_back(known * sd_of(gradient, inference_, columns_.directions.scale, has_prior()));
     }
     result.typed_nominal = {{nominal.size()}, nominal};
+    result.typed_present = {{before.size()}, before};
     result.typed_value = {{value.size()}, value};
     result.typed_sd = {{sd.size()}, sd};
   }

@@ -101,6 +101,7 @@ const Group<Result> kController{
     {},
     {},
     {{"nominal", &Result::typed_nominal, "SI: see /calibration/typed_unit", "Without errors"},
+     {"present", &Result::typed_present, "SI: see /calibration/typed_unit", "While the machine was measured"},
      {"value", &Result::typed_value, "SI: see /calibration/typed_unit", "With the estimates"},
      {"sd", &Result::typed_sd, "SI: see /calibration/typed_unit", "Standard deviation"}}};
 
@@ -248,8 +249,8 @@ CsvTable next_table(const StoredResult& result, const Result& found) {
 
 CsvTable controller_table(const Result& found) {
   CsvTable table{"controller", {"number", [&](std::size_t n) { return found.typed[n].name; }}, found.typed.size()};
-  table.columns = {list_column("nominal [SI]", found.typed_nominal), list_column("value [SI]", found.typed_value),
-                   list_column("sd [SI]", found.typed_sd)};
+  table.columns = {list_column("nominal [SI]", found.typed_nominal), list_column("present [SI]", found.typed_present),
+                   list_column("value [SI]", found.typed_value), list_column("sd [SI]", found.typed_sd)};
   return table;
 }
 

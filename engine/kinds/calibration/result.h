@@ -104,8 +104,10 @@ struct CalibrationResult {
 
   std::vector<NamedUnit> typed;              ///< parameters for the controller; `description` is the expression
   Array<double, axis::Typed> typed_nominal;  ///< values of the parameters without errors
-  Array<double, axis::Typed> typed_value;    ///< values of the parameters with the estimated errors
-  Array<double, axis::Typed> typed_sd;       ///< standard deviations of the values
+  /// Values of the parameters while the machine was measured: with the errors that the controller already corrected.
+  Array<double, axis::Typed> typed_present;
+  Array<double, axis::Typed> typed_value;  ///< values of the parameters with the estimated errors
+  Array<double, axis::Typed> typed_sd;     ///< standard deviations of the values
 
   std::string file;         ///< name of the table of measurements
   std::string file_text;    ///< content of that table

@@ -224,7 +224,7 @@ std::string typed_text(const CalibrationResult& found) {
   for (std::size_t n = 0; n < found.typed.size(); ++n) {
     const NamedUnit& typed = found.typed[n];
     const Unit& unit = display(typed);
-    std::string text = fmt::format("{} {:.4f} -> {:.4f}", typed.name, found.typed_nominal(n) / unit.si,
+    std::string text = fmt::format("{} {:.4f} -> {:.4f}", typed.name, found.typed_present(n) / unit.si,
                                    found.typed_value(n) / unit.si);
     const double half = quantile * found.typed_sd(n);
     if (!std::isnan(half)) text += fmt::format(" +- {:.4f}", half / unit.si);

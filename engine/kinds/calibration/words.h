@@ -32,7 +32,8 @@ std::vector<LeftComponent> left_components(const CalibrationResult& found);
 std::vector<std::string> left_notes(const CalibrationResult& found);
 /// A text on the probability that the machine keeps the limits; empty without limits.
 std::string kept_text(const CalibrationResult& found);
-/// "to type in: delta_radius 95.0000 -> 95.1139 +- 0.1394 mm"; empty without numbers for the controller.
+/// "to type in: delta_radius 95.0000 -> 95.1139 +- 0.1394 mm", from the value while the machine was measured to the new
+/// one; empty without numbers for the controller.
 std::string typed_text(const CalibrationResult& found);
 /// Warnings about contradictions, outliers, and estimates far outside their tolerances.
 std::vector<std::string> calibration_warnings(const CalibrationResult& found);
