@@ -227,10 +227,12 @@ std::vector<CalibrationRow> calibration_rows() {
                      .example = "[\"zero_*\", \"radius\"]",
                      .meaning = "The fitted errors: errors, patterns, sets, and names of combinations.",
                      .reader = read_fit},
-      CalibrationRow{.name = "combinations",
-                     .value = {.type = "table"},
-                     .usual = "none",
-                     .meaning = "Errors that are fitted by one number, each its factor times the number."},
+      CalibrationRow{
+          .name = "combinations",
+          .value = {.type = "table"},
+          .usual = "none",
+          .meaning = "Errors that are fitted by one number, each its factor times the number. A name may be a pattern, "
+                     "\"rod_*\"; of keys that fit an error the last one counts."},
       CalibrationRow{.name = "measured",
                      .value = {.type = "list of texts"},
                      .usual = "",

@@ -61,16 +61,44 @@ double read_weight(const StudyValue& value, const Factor& factor, const FittedEr
   }
 }
 
+/// Throws InputError for a key of a combination that names no error, and for a pattern that matches none.
+void check_error_names(const StudySection& section, const ModelDescription& model) {
+  std::vector<std::string_view> known = names(model.factors);
+  const std::vector<std::string> keys = section.keys();
+  for (const std::string& key : keys) {
+    if (!is_pattern(key)) continue;
+    known.push_back(key);
+    if (std::ranges::any_of(model.factors, [&](const Factor& factor) { return matches(key, factor.name); })) continue;
+    section.require(key).fail("matches no error of the mechanism", "'poesy models' lists the errors");
+  }
+  section.allow(known, "error");
+}
+
+/// Reads the weight of an error of a combination. If several keys name the error, the last one in the file counts.
+void set_weight(const StudyValue& value, FactorIndex factor, FittedErrors& combination, const ModelDescription& model) {
+  const Factor& error = model.factors[factor.value];
+  if (combination.factors.empty()) combination.dimension = error.dimension;
+  auto known = std::ranges::find(combination.factors, factor);
+  if (known == combination.factors.end()) {
+    combination.factors.push_back(factor);
+    combination.weights.push_back(0.0);
+    known = combination.factors.end() - 1;
+  }
+  combination.weights[static_cast<std::size_t>(known - combination.factors.begin())] =
+      read_weight(value, error, combination, model);
+}
+
 FittedErrors read_combination(const StudyValue& value, const std::string& own, const ModelDescription& model) {
   check_own_name(value, own, "combination", model);
   const StudySection section = value.section();
-  section.allow(names(model.factors), "error");
+  check_error_names(section, model);
   FittedErrors combination{.name = own, .dimension = Dimension::number, .place = value.place()};
   for (const auto& [key, weight] : in_order(section)) {
-    const FactorIndex factor = *model.find_factor(key);
-    if (combination.factors.empty()) combination.dimension = model.factors[factor.value].dimension;
-    combination.factors.push_back(factor);
-    combination.weights.push_back(read_weight(weight, model.factors[factor.value], combination, model));
+    for (std::size_t f = 0; f < model.factors.size(); ++f) {
+      if (key == model.factors[f].name || (is_pattern(key) && matches(key, model.factors[f].name))) {
+        set_weight(weight, FactorIndex(f), combination, model);
+      }
+    }
   }
   if (combination.factors.empty()) value.fail("names no error", "write { ERROR = 1, ... }");
   return combination;

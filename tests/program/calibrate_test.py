@@ -359,6 +359,19 @@ class Calibrate(ProgramTest):
         self.assertIn(f"delta_radius 95.2500 -> {1e3 * radius:.4f}", shown)
         self.assertIn("diagonal_rod 216.9000 -> ", shown)
 
+    def test_combinations_by_patterns(self):
+        """A pattern gives all errors that it matches one weight, of which a later key may change some: the same bits."""
+        _, named, _ = self.calibrated("delta-measured.toml", "delta-heights.csv")
+        patterns = [("{ foot_x_1 = 1, foot_x_2 = 1, foot_x_3 = 1 }", '{ "foot_x_*" = 1 }'),
+                    ("{ rod_1 = 1, rod_2 = 1, rod_3 = 1 }", '{ "rod_?" = 1 }')]
+        _, by_pattern, _ = self.calibrated("delta-measured.toml", "delta-heights.csv", patterns)
+        np.testing.assert_array_equal(by_pattern["estimate"], named["estimate"])
+        weights = ("{ rod_1 = 1, rod_2 = 1, rod_3 = 1 }", '{ rod_1 = 2, rod_2 = 1, rod_3 = 1 }')
+        _, named, _ = self.calibrated("delta-measured.toml", "delta-heights.csv", [weights])
+        later = (weights[0], '{ "rod_*" = 1, rod_1 = 2 }')
+        _, by_pattern, _ = self.calibrated("delta-measured.toml", "delta-heights.csv", [later])
+        np.testing.assert_array_equal(by_pattern["estimate"], named["estimate"])
+
     def test_no_noise(self):
         """All noise 0: equal weights, the same estimates as with equal noise, and no intervals."""
         text = (self.folder / "delta-heights.csv").read_text()
