@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <chrono>
 #include <filesystem>
 #include <limits>
@@ -113,6 +114,40 @@ std::vector<GeometryParameter> names_in_expressions(const Study& study) {
   return list;
 }
 
+/// The names in an expression. A name directly after a number is a unit and left out.
+std::vector<std::string> names_in(const std::string& text) {
+  const auto is_letter = [](char c) { return c == '_' || std::isalpha(static_cast<unsigned char>(c)) != 0; };
+  const auto is_part = [&](char c) { return is_letter(c) || std::isdigit(static_cast<unsigned char>(c)) != 0; };
+  std::vector<std::string> list;
+  char before = ' ';
+  for (auto at = text.begin(); at != text.end();) {
+    const auto end = std::find_if_not(at, text.end(), is_part);
+    if (end != at && is_letter(*at) && std::isdigit(static_cast<unsigned char>(before)) == 0)
+      list.emplace_back(at, end);
+    at = end == at ? at + 1 : end;
+    if (*(at - 1) != ' ') before = *(at - 1);
+  }
+  return list;
+}
+
+/// Throws InputError if the expression of a number for the controller names an error of the mechanism that is not
+/// fitted: its value is not known.
+void check_names(const ControllerNumber& number, const std::vector<GeometryParameter>& parameters, const Study& study) {
+  for (const std::string& name : names_in(number.text)) {
+    const auto factor = study.model().find_factor(name);
+    if (!factor || std::ranges::find(parameters, name, &GeometryParameter::name) != parameters.end()) continue;
+    const std::vector<FittedErrors>& fit = study.analysis.calibration->fit;
+    const auto combination = std::ranges::find_if(fit, [&](const FittedErrors& fitted) {
+      return std::ranges::find(fitted.factors, *factor) != fitted.factors.end();
+    });
+    throw InputError(
+        number.place,
+        fmt::format("controller number '{}' uses the error '{}', which is not fitted alone", number.name, name),
+        combination == fit.end() ? "use fitted errors only, or add it to fit"
+                                 : "use the combination '" + combination->name + "', which has this error");
+  }
+}
+
 /// The dimension of an expression's value. Throws InputError unless it is a length, an angle or a number.
 Dimension typed_dimension(const file::Value& value, const ControllerNumber& number) {
   for (const Dimension dimension : {Dimension::length, Dimension::angle, Dimension::number}) {
@@ -127,6 +162,7 @@ std::vector<TypedNumber> typed_numbers(const Study& study) {
   if (study.analysis.calibration->controller.empty()) return list;
   const std::vector<GeometryParameter> parameters = names_in_expressions(study);
   for (const ControllerNumber& number : study.analysis.calibration->controller) {
+    check_names(number, parameters, study);
     const file::Expression expression{number.text, "analysis.calibration.controller." + number.name, number.place,
                                       true};
     const auto evaluated = [=, geometry = study.mechanism.geometry](std::span<const double> fitted) {

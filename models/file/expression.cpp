@@ -18,7 +18,7 @@ constexpr std::size_t kLongest = 1000;
 constexpr int kLargestExponent = 12;  ///< largest exponent after ^
 /// Largest power of m, rad, kg or s; it keeps powers of powers in the range of int.
 constexpr int kLargestPower = 100;
-constexpr std::array<std::string_view, 5> kFunctions{"sqrt", "sin", "cos", "tan", "atan2"};
+constexpr std::array<std::string_view, 6> kFunctions{"sqrt", "sin", "cos", "tan", "atan", "atan2"};
 
 bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || static_cast<unsigned char>(c) >= 0x80;
@@ -61,7 +61,7 @@ class Parser {
   [[noreturn]] void unexpected() {
     const bool ended = at_ >= text_.size();
     fail(at_, ended ? "ends too early" : "cannot be read at '" + printable(text_.substr(at_), 20) + "'",
-         "write numbers with units, parameters, + - * / ^ ( ), sqrt, sin, cos, tan, atan2 and pi, e.g. \"a + 20 mm\"");
+         "write numbers with units, parameters, + - * / ^ ( ), sqrt, sin, cos, tan, atan, atan2 and pi, e.g. \"a + 20 mm\"");
   }
 
   void skip() {
@@ -247,6 +247,12 @@ class Parser {
         fail(at, "takes the root of " + dimension_text(x), "take the root of a square, for instance sqrt(a * a)");
       }
       return {std::sqrt(x.si), {length / 2, angle / 2, mass / 2, time / 2}, x.any};
+    }
+    if (name == "atan") {
+      if (!x.powers.like(kNumber.powers)) {
+        fail(at, "takes atan of " + dimension_text(x), "give it a number, e.g. a/b, or take atan2(a, b)");
+      }
+      return of_dimension(std::atan(x.si), Dimension::angle);
     }
     if (!x.powers.like(kNumber.powers) && !x.powers.like(kAngle.powers)) {
       fail(at, "takes " + std::string(name) + " of " + dimension_text(x), "give it an angle, e.g. 30 deg");

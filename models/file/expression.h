@@ -10,7 +10,7 @@
 #include "models/file/physical.h"
 
 /// Expressions in mechanism files. They consist of numbers, parameters of the geometry, + - * / ^ ( ), sqrt, sin, cos,
-/// tan, atan2, pi, and units after numbers: "a + 20 mm", "pi * d^4 / 64", "20 N/um". Dimensions are evaluated together
+/// tan, atan, atan2, pi, and units after numbers: "a + 20 mm", "pi * d^4 / 64", "20 N/um". Dimensions are evaluated together
 /// with values, so a message names the place inside the expression.
 ///
 /// A name directly after a number is a unit: "2 g" is two grams even if a parameter is called g, and "2 * g" is twice

@@ -106,7 +106,7 @@ std::string key_reference() {
          "frame, "
          "with the\nmechanism at home, as on a drawing.\n\n"
          "- A number may be an expression of parameters: `\"a + 20 mm\"`, with `+ - * / ^ ( )`, `sqrt sin cos tan "
-         "atan2 "
+         "atan atan2 "
          "pi` and units\n  inside. Its dimension is checked. A bare 0 is any quantity; other bare numbers are "
          "numbers. A name behind a\n  number is a unit, `2 * g` twice a parameter.\n"
          "- A point is `[x, y, z]`; a direction `\"x\"`, `\"-z\"`, or three entries of one dimension.\n" +

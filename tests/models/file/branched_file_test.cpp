@@ -271,7 +271,7 @@ TEST(BranchedFile, RefusesStiffnessThatIsNone) {
            "m/rad); write it like \"9000 N m/rad\""},
           {"stiffness = { z = \"2 N/um\" }", "stiffness = { z = \"2 N/furlong\" }",
            "m.toml:34:101: limb[0].joints[0].stiffness.z '2 N/furlong' has an unknown parameter 'furlong'; known: R, "
-           "r, w, h, sqrt, sin, cos, tan, atan2, pi"},
+           "r, w, h, sqrt, sin, cos, tan, atan, atan2, pi"},
           {"stiffness = { z = \"2 N/um\" }", "stiffness = { w = \"2 N/um\" }",
            "m.toml:34:92: unknown key 'w' in [limb[0].joints[0].stiffness]; known: x, y, z, rx, ry, rz"},
           {"stiffness = { z = \"2 N/um\" }", "stiffness = { zz = \"2 N/um\" }",
@@ -536,7 +536,7 @@ TEST(BranchedFile, RefusesWhatIsWrongWithLoads) {
            "e.g. \"9.81 m/s^2\""},
           {"\"-9.81 m/s^2\"", "\"-9.81 m/s\"",
            "m.toml:65:27: load.gravity[2] '-9.81 m/s' has an unknown parameter 's'; known: R, r, w, h, sqrt, sin, cos, "
-           "tan, atan2, pi"},
+           "tan, atan, atan2, pi"},
           {"\"3 N\"", "\"3 kg\"",
            "m.toml:68:10: load.force[0] '3 kg' is a mass, but must be a force (N); write it like \"5 N\""},
           {"\"3 N\"", "\"3 N m\"",

@@ -52,6 +52,8 @@ TEST(Expression, Lengths) {
 
 TEST(Expression, OtherDimensions) {
   EXPECT_EQ(dimension_text(of("atan2(a, h) + 10 deg - tilt")), "an angle");
+  EXPECT_EQ(dimension_text(of("atan(a/h) + tilt")), "an angle");
+  EXPECT_DOUBLE_EQ(of("atan(a/h)").si, of("atan2(a, h)").si);
   EXPECT_NEAR(of("atan2(a, h)").si, std::atan2(0.25, 0.6), 1e-16);
   EXPECT_NEAR(of("180 deg").si, std::numbers::pi, 1e-15);
   EXPECT_EQ(dimension_text(of("a / h + 1")), "a number");
@@ -78,6 +80,7 @@ TEST(Expression, Mistakes) {
            {"2 h", "m.toml:3:13: platform.origin[2] '2 h' has an unknown unit 'h'; known: "},
            {"sin(a)", "m.toml:3:11: platform.origin[2] 'sin(a)' takes sin of a length; give it an angle"},
            {"sqrt(a)", "m.toml:3:11: platform.origin[2] 'sqrt(a)' takes the root of a length; the root of a square"},
+           {"atan(a)", "m.toml:3:11: platform.origin[2] 'atan(a)' takes atan of a length; give it a number, e.g. a/b"},
            {"atan2(a, tilt)",
             "m.toml:3:11: platform.origin[2] 'atan2(a, tilt)' takes atan2 of a length and an angle; "},
            {"atan2(a)", "m.toml:3:18: platform.origin[2] 'atan2(a)' cannot be read at ')'; write numbers"},

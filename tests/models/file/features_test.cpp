@@ -307,7 +307,7 @@ TEST(Features, AreRefusedWithPlaceAndRemedy) {
           {"\"A|B\" } } ]",
            "\"A|B\" } } ]\n\n[[error]]\nname = \"k\"\nlimb = 1\nframe = 1\ncomponents = { delta_x = \"1 / x\" }\n",
            "m.toml:32:31: error[0].components.delta_x '1 / x' has an unknown parameter 'x'; known: R, r, h, e, t, "
-           "sqrt, sin, cos, tan, atan2, pi"},
+           "sqrt, sin, cos, tan, atan, atan2, pi"},
           {"\"A|B\" } } ]",
            "\"A|B\" } } ]\n\n[[error]]\nname = \"k\"\nlimb = 1\nframe = 1\nscale = 2\ncomponents = { delta_x = 1 }\n",
            "m.toml:32:1: error[0].scale does not belong to an error with components, each of which has its share; "

@@ -60,7 +60,7 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
           {"\"250 mm\"", "\"250 mm = 1\"",
            "m.toml:7:23: geometry.a.value '250 mm = 1' cannot be read at '= 1'; write numbers with units, parameters, "
            "+ "
-           "- * / ^ ( ), sqrt, sin, cos, tan, atan2 and pi, e.g. \"a + 20 mm\""},
+           "- * / ^ ( ), sqrt, sin, cos, tan, atan, atan2 and pi, e.g. \"a + 20 mm\""},
           {"\"250 mm\"", "\"h / 2\"",
            "m.toml:7:16: geometry.a.value 'h / 2' has an unknown parameter 'h'; values in [geometry] are numbers; "
            "write the expression where it is used"},
@@ -175,7 +175,7 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
            "dimension"},
           {"at = [\"a\", 0, 0], axis = \"y\"", "at = [\"b\", 0, 0], axis = \"y\"",
            "m.toml:21:36: limb[0].joints[0].at[0] 'b' has an unknown parameter 'b'; known: a, c, h, sqrt, sin, cos, "
-           "tan, atan2, pi"},
+           "tan, atan, atan2, pi"},
           {"at = [\"a\", 0, 0], axis = \"y\"", "at = \"corner\", axis = \"y\"",
            "m.toml:21:34: limb[0].joints[0].at 'corner' is neither a joint of this limb nor a point; known: A, q, S"},
           {"at = [\"a\", 0, 0], axis = \"y\"", "at = \"A\", axis = \"y\"",
