@@ -26,6 +26,7 @@
 #include "engine/report/table.h"
 #include "engine/result/described.h"
 #include "engine/result/result_file.h"
+#include "engine/run/run_options.h"
 #include "engine/storage/checkpoint.h"
 #include "engine/storage/content_hash.h"
 #include "engine/study/bare_numbers.h"
@@ -46,6 +47,7 @@ struct CalibrateOptions {
   std::string study;
   std::string measured;
   std::string result;
+  std::size_t threads = 0;
 };
 
 /// Reads the file of poses that a selection names, because reading the study for a calibration did not open it.
@@ -207,9 +209,11 @@ int calibrate_machine(const CalibrateOptions& options) {
     path = check_result_path(options.result, std::array{options.study, options.measured});
     lock.emplace(path);
   }
+  const std::size_t threads = resolved_threads(options.threads);
+  start_threads(threads);
   const auto start = std::chrono::steady_clock::now();
   Calibrated made = calibrate({study, *model, options.measured, file, measured.poses, predicted.poses,
-                               candidates ? candidates->poses : predicted.poses, typed});
+                               candidates ? candidates->poses : predicted.poses, typed, threads});
   if (made.result.estimate.empty()) {
     return complain(options.measured +
                         ": a machine on the way of the fit was not solved; look at the units of its columns, of which "
@@ -232,7 +236,7 @@ int calibrate_machine(const CalibrateOptions& options) {
   print(text_of(kCalibrationReport.tables(result, {}), output_width()));
   if (!path.empty()) {
     write_result(path, kCalibrationKind.study.name, kCalibrationFile, study, predicted, result.found,
-                 run_facts(seconds_since(start), 1, made.solves));
+                 run_facts(seconds_since(start), threads, made.solves));
   }
   if (made.converged) return kDone;
   return complain(options.measured +
@@ -252,6 +256,7 @@ Command& add_calibrate(Command& program) {
                  "measurements; a row is a pose and what was measured there: deviation_R, actual_C, distance")
       ->required();
   command.add_value("-o,--output", options.result, "RESULT.h5", "result file; default: only the summary");
+  command.add_whole_number("--threads", options.threads, "N", "number of threads; default: one per processor", 1, 1024);
   command.examples = {{"prints the fitted errors, and what to type into the controller",
                        "poesy calibrate study.toml --measured heights.csv"},
                       {"keeps everything", "poesy calibrate study.toml --measured heights.csv -o machine.h5"}};

@@ -344,6 +344,17 @@ class Calibrate(ProgramTest):
         np.testing.assert_allclose(found["residual"], 0.0, atol=1e-11)
         np.testing.assert_allclose(found["estimate"], [estimate[name] for name in names], rtol=0, atol=2e-8)
 
+    def test_any_number_of_threads(self):
+        """Poses and candidates are solved by several threads, in the order of the poses: the same bits."""
+        hashes = set()
+        for threads in (1, 2, 5):
+            self.succeeds("calibrate", "delta-measured.toml", "--measured", "delta-heights.csv", "-o", "t.h5", "--threads",
+                          threads)
+            with h5py.File(self.folder / "t.h5") as file:
+                hashes.add(file.attrs["content_sha256"])
+                self.assertEqual(file["run/threads"][()], threads)
+        self.assertEqual(len(hashes), 1)
+
     def test_numbers_that_the_controller_had(self):
         """What is typed in goes from the value with the present corrections to the new one."""
         _, without, done = self.calibrated("delta-measured.toml", "delta-heights.csv")

@@ -66,7 +66,7 @@ class Calibrate(FolderTest):
         }
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", poesy.PoesyWarning)
-            again = poesy.calibrate("delta-measured.toml", arrays)
+            again = poesy.calibrate("delta-measured.toml", arrays, threads=2)
         for name, value in found.items():
             self.assertAlmostEqual(again[name], value, delta=1e-9 * found.sd[name])
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "engine/kinds/calibration/kept_limits.h"
 #include "engine/kinds/commanded.h"
 #include "engine/kinds/fitted_errors.h"
+#include "engine/run/run_in_slots.h"
 #include "engine/study/calibration.h"
 
 namespace poesy {
@@ -116,14 +118,41 @@ std::vector<calibration::MeasuredValue> measured_values(const MachineToCalibrate
   return list;
 }
 
-/// Calibrates one machine from its table of measurements.
+calibration::ExactMachine exact_machine(const MachineToCalibrate& machine) {
+  try {
+    return {machine.model, machine.study.solver};
+  } catch (const std::invalid_argument& reason) {
+    throw InputError(machine.study.mechanism.place,
+                     "mechanism '" + machine.model.description().name + "' " + reason.what(),
+                     "take another mechanism, or fidelity");
+  }
+}
+
+/// What solves machines on one thread.
+struct SolverOfThread {
+  SolverOfThread(const MachineToCalibrate& machine, const calibration::CoordinateError& commanded)
+      : exact(exact_machine(machine)), correction(exact, commanded) {}
+  SolverOfThread(const SolverOfThread&) = delete;
+  SolverOfThread& operator=(const SolverOfThread&) = delete;
+
+  calibration::ExactMachine exact;
+  calibration::DriveCorrection correction;
+};
+
+/// What is left at one pose: of the measured machine, and of the machines by which limits are judged.
+struct LeftThere {
+  std::optional<calibration::LeftAtPose> left;
+  Matrix machines;
+};
+
+/// The calibration of one machine.
 class Calibration {
  public:
   explicit Calibration(const MachineToCalibrate& machine)
       : machine_(machine),
         table_(*machine.study.analysis.calibration),
         exact_(exact_machine(machine)),
-        correction_(exact_, commanded_coordinates(machine.study, machine.model, exact_, machine.measured_at)),
+        commanded_(commanded_coordinates(machine.study, machine.model, exact_, machine.measured_at)),
         weights_(weights_of(machine, table_)),
         columns_(fitted_columns(machine.study, table_, exact_)),
         measurement_(exact_, measured_poses(), measured_values(machine, weights_.sd), frame(), target()) {
@@ -136,7 +165,7 @@ class Calibration {
     Calibrated made;
     made.converged = fit_.solved && fit_.converged;
     if (fit_.solved) set_result(made);
-    made.solves = exact_.solves();
+    made.solves = exact_.solves() + solves_;
     return made;
   }
 
@@ -153,16 +182,6 @@ class Calibration {
     if (table_.next > 0) set_next(made);
   }
 
-  static calibration::ExactMachine exact_machine(const MachineToCalibrate& machine) {
-    try {
-      return {machine.model, machine.study.solver};
-    } catch (const std::invalid_argument& reason) {
-      throw InputError(machine.study.mechanism.place,
-                       "mechanism '" + machine.model.description().name + "' " + reason.what(),
-                       "take another mechanism, or fidelity");
-    }
-  }
-
   calibration::Frame frame() const { return static_cast<calibration::Frame>(table_.frame); }
   calibration::Target target() const { return static_cast<calibration::Target>(table_.target); }
   bool has_prior() const { return table_.prior == PriorKnowledge::tolerances; }
@@ -174,14 +193,15 @@ class Calibration {
   }
 
   /// The measured poses. The drives are those of the controller's present parameters.
-  std::vector<calibration::MeasuredPose> measured_poses() const {
+  std::vector<calibration::MeasuredPose> measured_poses() {
     std::vector<calibration::MeasuredPose> poses;
     const std::vector<double> corrected = present();
     const Vector errors =
         columns_.directions.F * Eigen::Map<const Vector>(corrected.data(), position(corrected.size()));
+    const calibration::DriveCorrection correction(exact_, commanded_);
     for (std::size_t row = 0; row < machine_.measured_at.size(); ++row) {
       const std::vector<double> pose = pose_of(machine_.measured_at, row);
-      const auto drive_at = errors.isZero(0.0) ? std::optional(pose) : correction_.drive_at(pose, errors);
+      const auto drive_at = errors.isZero(0.0) ? std::optional(pose) : correction.drive_at(pose, errors);
       if (!drive_at) {
         throw InputError({machine_.path, row + 2, 1}, "the drives with the present corrections do not reach this pose",
                          "check analysis.calibration.present, or leave the row out");
@@ -368,28 +388,61 @@ class Calibration {
     const calibration::Corrected corrected{columns_.directions.F * fit_.theta, fit_.phi, frame()};
     result.left_in_device_frame = frame() == calibration::Frame::known ? 0 : 1;
     KeptLimits kept(machine_.study, machine_.model, *known);
-    for (std::size_t m = 0; m < poses; ++m) {
+    const auto solve = [&](SolverOfThread& solver, std::size_t m) {
       const std::vector<double> pose = pose_of(machine_.predicted_at, m);
-      const auto left = calibration::left_at(exact_, correction_, pose, corrected, *known);
-      if (!left) {
+      LeftThere there{calibration::left_at(solver.exact, solver.correction, pose, corrected, *known), {}};
+      if (there.left) there.machines = kept.left_at(solver.exact, pose, there.left->drive_at, corrected);
+      return there;
+    };
+    const auto keep = [&](std::size_t m, LeftThere& there) {
+      if (!there.left) {
         made.warnings.push_back(fmt::format("pose {} cannot be reached with the corrected drives", m));
-        continue;
+        return;
       }
-      std::ranges::copy(left->mean, result.left_mean.row(m).begin());
-      std::ranges::copy(left->sd, result.left_sd.row(m).begin());
-      if (!weights_.is_noise) std::ranges::fill(result.left_sd.row(m), kNaN);
-      const std::vector<double> shift = drive_shift(machine_.model, result.drives, pose, left->drive_at);
-      std::ranges::copy(shift, result.drive_shift.row(m).begin());
-      kept.add(exact_, pose, left->drive_at, corrected);
-    }
+      set_left_at(m, *there.left, result);
+      kept.add(there.machines);
+    };
+    over_poses<LeftThere>(poses, solve, keep);
     result.kept = weights_.is_noise ? kept.share() : kNaN;
     if (const std::string unjudged = kept.not_judged(); !unjudged.empty()) made.warnings.push_back(unjudged);
   }
 
-  /// For each candidate pose, the derivatives of the values that would be measured there, divided by the noise, with
-  /// respect to the fitted numbers. A matrix has one row for each quantity that the file measures (such as the height),
-  /// and a column for each fitted error, divided by its scale, and each number that places frame and target. Distances
-  /// are left out.
+  void set_left_at(std::size_t m, const calibration::LeftAtPose& left, CalibrationResult& result) const {
+    std::ranges::copy(left.mean, result.left_mean.row(m).begin());
+    std::ranges::copy(left.sd, result.left_sd.row(m).begin());
+    if (!weights_.is_noise) std::ranges::fill(result.left_sd.row(m), kNaN);
+    const std::vector<double> pose = pose_of(machine_.predicted_at, m);
+    std::ranges::copy(drive_shift(machine_.model, result.drives, pose, left.drive_at),
+                      result.drive_shift.row(m).begin());
+  }
+
+  /// Calls solve(solver, n) for each n = 0 .. count - 1 on a pool of threads, and keep(n, what it returned) in the
+  /// order of n.
+  template <class Found, class Solve, class Keep>
+  void over_poses(std::size_t count, const Solve& solve, const Keep& keep) {
+    const RunOptions options{.threads = machine_.threads};
+    struct FoundInSlot {
+      Found found;
+      std::uint64_t solves = 0;
+    };
+    std::vector<FoundInSlot> slots(pool_slots(options));
+    const auto make_work = [&]() -> SlotJob {
+      return [&, solver = std::make_shared<SolverOfThread>(machine_, commanded_)](std::size_t n, std::size_t slot) {
+        const std::uint64_t before = solver->exact.solves();
+        slots[slot].found = solve(*solver, n);
+        slots[slot].solves = solver->exact.solves() - before;
+      };
+    };
+    const auto finish = [&](std::size_t n, std::size_t slot) {
+      keep(n, slots[slot].found);
+      solves_ += slots[slot].solves;
+    };
+    run_alone(count, options, {.make_work = make_work, .finish = finish, .state = {}});
+  }
+
+  /// For each candidate pose, the derivatives of the values that would be measured there with respect to the fitted
+  /// numbers, divided by the noise. A matrix has one row for each quantity that the file measures (such as the height),
+  /// and a column for each fitted error and each number of frame and target. Distances are left out.
   std::vector<Matrix> rows_of_candidates() {
     std::vector<calibration::MeasuredValue> kinds;
     for (const calibration::MeasuredValue& value : measurement_.values()) {
@@ -400,8 +453,7 @@ class Calibration {
       if (same == kinds.end()) kinds.push_back(value);
     }
     const Vector none = Vector::Zero(fit_.theta.size());
-    std::vector<Matrix> rows;
-    for (std::size_t c = 0; c < machine_.candidates.size() && !kinds.empty(); ++c) {
+    const auto solve = [&](SolverOfThread& solver, std::size_t c) {
       const std::vector<double> pose = pose_of(machine_.candidates, c);
       std::vector<calibration::MeasuredValue> values = kinds;
       Vector sd(position(values.size()));
@@ -409,7 +461,7 @@ class Calibration {
         values[i].row = 0;
         sd(position(i)) = inference_.sd_factor * values[i].sd;
       }
-      const calibration::Measurement measurement(exact_, {{pose, pose}}, values, frame(), target());
+      const calibration::Measurement measurement(solver.exact, {{pose, pose}}, values, frame(), target());
       const auto derivatives =
           calibration::FittedMeasurement(measurement, columns_.directions).derivatives(none, fit_.phi);
       Matrix all = Matrix::Zero(sd.size(), fit_.theta.size() + fit_.phi.size());
@@ -417,8 +469,11 @@ class Calibration {
         all << derivatives->errors * columns_.directions.scale.asDiagonal(), derivatives->places;
         all = sd.cwiseInverse().asDiagonal() * all;
       }
-      rows.push_back(all);
-    }
+      return all;
+    };
+    std::vector<Matrix> rows;
+    const auto keep = [&](std::size_t, Matrix& found) { rows.push_back(std::move(found)); };
+    over_poses<Matrix>(kinds.empty() ? 0 : machine_.candidates.size(), solve, keep);
     return rows;
   }
 
@@ -463,12 +518,13 @@ class Calibration {
   const MachineToCalibrate& machine_;
   const CalibrationTable& table_;
   calibration::ExactMachine exact_;
-  calibration::DriveCorrection correction_;
+  calibration::CoordinateError commanded_;
   Weights weights_;
   FittedColumns columns_;
   calibration::Measurement measurement_;
   calibration::FitResult fit_;
   calibration::Inference inference_;
+  std::uint64_t solves_ = 0;  ///< number of solves of the pool's threads
 };
 
 }  // namespace

@@ -33,6 +33,7 @@ struct MachineToCalibrate {
   const PoseSet& predicted_at;            ///< poses at which the remaining displacement is predicted
   const PoseSet& candidates;              ///< poses among which the next ones to measure are chosen
   const std::vector<TypedNumber>& typed;  ///< parameters for the controller
+  std::size_t threads = 1;                ///< number of threads; the result is the same for any number
 };
 
 /// The result of a calibration, and messages about it.

@@ -75,10 +75,13 @@ KeptLimits::KeptLimits(const Study& study, const Model& model, const calibration
   phi_ = deviations.bottomRows(known.phi.size()).colwise() + known.phi;
 }
 
-void KeptLimits::add(calibration::ExactMachine& machine, std::span<const double> pose, std::span<const double> drive_at,
-                     const calibration::Corrected& corrected) {
-  if (limits_.empty()) return;
-  const Matrix left = calibration::left_of_machines(machine, pose, drive_at, errors_, phi_, corrected);
+Matrix KeptLimits::left_at(calibration::ExactMachine& machine, std::span<const double> pose,
+                           std::span<const double> drive_at, const calibration::Corrected& corrected) const {
+  if (limits_.empty()) return {};
+  return calibration::left_of_machines(machine, pose, drive_at, errors_, phi_, corrected);
+}
+
+void KeptLimits::add(const Matrix& left) {
   for (Judged& limit : limits_) {
     for (Eigen::Index s = 0; s < kMachines; ++s) {
       double squares = 0.0;

@@ -18,10 +18,13 @@ class KeptLimits {
   /// Draws the machines. known: estimates and covariance of the machine's errors.
   KeptLimits(const Study& study, const Model& model, const calibration::Knowledge& known);
 
-  /// Solves the machines at a pose. The controller moves the drives to the displacements that those of the perfect
-  /// mechanism have at `drive_at`.
-  void add(calibration::ExactMachine& machine, std::span<const double> pose, std::span<const double> drive_at,
-           const calibration::Corrected& corrected);
+  /// [components x machines] Solves the machines at a pose, and returns what remains of each. The controller moves the
+  /// drives to where those of the perfect mechanism are at `drive_at`. Empty if no limit can be judged. May be called
+  /// from several threads, each with an own `machine`.
+  calibration::Matrix left_at(calibration::ExactMachine& machine, std::span<const double> pose,
+                              std::span<const double> drive_at, const calibration::Corrected& corrected) const;
+  /// Adds what left_at() returned for the next pose.
+  void add(const calibration::Matrix& left);
 
   /// The share of machines that keep all limits that can be judged; NaN if no limit can be judged.
   double share() const;

@@ -85,6 +85,8 @@ class Calibration(dict[str, float]):
 def calibrate(
     study: Mapping[str, Any] | str | os.PathLike[str],
     measured: Mapping[str, npt.ArrayLike | Sequence[str]] | str | os.PathLike[str],
+    *,
+    threads: int | None = None,
 ) -> Calibration:
     """Fits errors of one machine to measurements of it, by ``poesy calibrate``.
 
@@ -95,6 +97,8 @@ def calibrate(
     measured
         The path of a CSV file, or columns by name, of equal length, SI: pose coordinates, ``deviation_z``,
         ``actual_z``, ``sd_z``, ``distance``, and texts in ``name`` and ``to``. NaN or an empty text is a missing value.
+    threads
+        Number of threads; default: one for each processor. The result does not depend on it.
 
     Raises
     ------
@@ -105,7 +109,7 @@ def calibrate(
     """
     folder = Path(tempfile.mkdtemp(prefix="poesy-"))
     try:
-        found = _calibrated(study, measured, folder)
+        found = _calibrated(study, measured, threads, folder)
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
@@ -118,6 +122,7 @@ def calibrate(
 def _calibrated(
     study: Mapping[str, Any] | str | os.PathLike[str],
     measured: Mapping[str, npt.ArrayLike | Sequence[str]] | str | os.PathLike[str],
+    threads: int | None,
     folder: Path,
 ) -> Calibration:
     path = write_study(study, folder)[0] if isinstance(study, Mapping) else Path(study)
@@ -127,7 +132,8 @@ def _calibrated(
     else:
         table = Path(measured)
     output = folder / "machine.h5"
-    done = _program.start(["calibrate", str(path), "--measured", str(table), "-o", str(output)])
+    words = ["calibrate", str(path), "--measured", str(table), "-o", str(output)]
+    done = _program.start(words + (["--threads", str(threads)] if threads is not None else []))
     if done.code not in (_program.DONE, _program.TOO_MANY_NOT_CONVERGED):
         raise _program.exception_of(done)
     if not output.exists():
