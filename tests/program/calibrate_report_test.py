@@ -57,6 +57,20 @@ class CalibrationReport(ProgramTest):
         self.assertEqual((rows[found["value_row"][distance]], rows[found["value_to"][distance]]), ("p1", "p4"))
         self.assertIn("10 of 15 values shown", " ".join(table["notes"]))
 
+    def test_every_column_is_explained(self):
+        """Units stand in the heading or in a column; the notes explain what the headings do not."""
+        self.calibrate()
+        for name, words in (("fitted", ["estimate:", "low, high: its 95 % interval", "sd:", "tolerance/sd:"]),
+                            ("next", ["gain:"]), ("residuals", ["residual:", "residual/sd:"])):
+            notes = "\n".join(self.table(name)["notes"])
+            for word in words:
+                self.assertIn(word, notes)
+        text = (self.folder / "delta-measured.toml").read_text()
+        self.write("study.toml", text.replace("next       = 5", 'frame = "height"\nnext = 0').replace("errors.linear", "# "))
+        self.calibrate("study.toml")
+        self.assertIn("height, target_x, ...: places in m", self.table("frame")["notes"][0])
+        self.assertIn("scale/sd: a usual size", "\n".join(self.table("fitted")["notes"]))
+
     def test_outliers_are_marked(self):
         text = (self.folder / "delta-heights.csv").read_text()
         self.write("wrong.csv", text.replace("-51.962,0,-72.8,", "-51.962,0,7.2,"))

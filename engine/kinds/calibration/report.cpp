@@ -19,8 +19,18 @@
 namespace poesy {
 namespace {
 
+/// What the columns of the table of fitted errors are.
+std::string fitted_legend(const CalibrationResult& found) {
+  return fmt::format(
+      "estimate: the error that was fitted, in its unit; low, high: its {} interval; sd: its standard deviation; {}",
+      percent_text(found.conf_level),
+      found.has_tolerances != 0
+          ? "tolerance/sd: the sigma of [errors] over it; below 1 the tolerance says more than the measurements"
+          : "scale/sd: a usual size (1 mm, or 1 mm over the reach) over it");
+}
+
 Table fitted_table(const CalibrationResult& found) {
-  Table table{.name = "fitted", .caption = measured_text(found), .columns = {}, .notes = {residual_text(found)}};
+  Table table{.name = "fitted", .caption = measured_text(found), .columns = {}};
   const auto value = [&](const std::string& name, const auto& array, int dispensable = 0) {
     return FilledColumn{number_column(name, name, "", dispensable),
                         [&](std::size_t n) { return value_cell(array(n), found.fitted[n]); }};
@@ -34,6 +44,8 @@ Table fitted_table(const CalibrationResult& found) {
         value("sd", found.sd),
         {number_column("scale_over_sd", found.has_tolerances != 0 ? "tolerance/sd" : "scale/sd"),
          [&](std::size_t n) { return number_cell(found.scale(n) / found.sd(n), 2); }}});
+  if (found.noise_is_known != 0) table.notes.push_back(fitted_legend(found));
+  table.notes.push_back(residual_text(found));
   for (std::string& warning : calibration_warnings(found)) table.notes.push_back(std::move(warning));
   if (const std::string typed = typed_text(found); !typed.empty()) table.notes.push_back(typed);
   for (std::string& note : estimate_notes(found)) table.notes.push_back(std::move(note));
@@ -43,7 +55,11 @@ Table fitted_table(const CalibrationResult& found) {
 
 Table frame_table(const CalibrationResult& found) {
   Table table{
-      .name = "frame", .caption = "The unknown frame of the measuring device, and the target (SI)", .columns = {}};
+      .name = "frame",
+      .caption = "The unknown frame of the measuring device, and the target",
+      .columns = {},
+      .notes = {
+          "x, y, z, height, target_x, ...: places in m; rho_x, ...: rotation vectors in rad; slopes have no unit"}};
   fill(table, positions(found.frame_parts.size()),
        {{text_column("number", "number"), [&](std::size_t n) { return text_cell(found.frame_parts[n]); }},
         {number_column("value", "value"), [&](std::size_t n) { return number_cell(found.frame(n), 6); }}});
@@ -51,7 +67,12 @@ Table frame_table(const CalibrationResult& found) {
 }
 
 Table next_table(const StoredResult& result, const CalibrationResult& found) {
-  Table table{.name = "next", .caption = "Poses to measure next, the best first", .columns = {}};
+  Table table{
+      .name = "next",
+      .caption = "Poses to measure next, the best first",
+      .columns = {},
+      .notes = {"gain: information about the fitted errors beyond that of the measurements and the poses above; "
+                "1 bit halves the volume of what they may be"}};
   std::vector<FilledColumn> columns;
   for (std::size_t c = 0; c < result.pose_coordinates.size(); ++c) {
     const NamedUnit& own = result.pose_coordinates[c];

@@ -53,6 +53,7 @@ std::vector<FilledColumn> place_columns(const StoredResult& result, const Calibr
 }
 
 void add_notes(const CalibrationResult& found, const std::vector<std::size_t>& shown, Table& table) {
+  table.notes.emplace_back("residual: measured less fitted value, in the unit of the value");
   if (found.noise_is_known != 0) {
     table.notes.emplace_back(
         "residual/sd: the residual over its own standard deviation, which is below that of the value, because the fit "
