@@ -36,6 +36,13 @@ class CalibrationReport(ProgramTest):
         data = json.loads(re.search(r'id="report-data">(.*?)</script>', page, re.S)[1])
         return data["figures"], lambda name: np.frombuffer(base64.b64decode(data["arrays"][name]), "<f4")
 
+    def test_the_example_among_the_results(self):
+        """results/measured-printer/calibration.txt is what `show` prints, but for the speed."""
+        self.calibrate()
+        shown = self.succeeds("show", "r.h5", "--width", "100").splitlines()
+        example = Path(__file__).resolve().parents[2] / "results/measured-printer/calibration.txt"
+        self.assertEqual([line for line in shown if not line.endswith(" solves/s")], example.read_text().splitlines())
+
     def test_residuals_of_show(self):
         self.calibrate()
         table = self.table("residuals")
