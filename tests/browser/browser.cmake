@@ -10,7 +10,7 @@ foreach(script IN ITEMS d3 plot)
   set_tests_properties(browser.bundled_${script} PROPERTIES LABELS browser FIXTURES_REQUIRED web_packages)
 endforeach()
 
-# Reports in a browser: a page with figures of every type, and reports of studies. Screenshots stay in the build tree.
+# Reports in a browser: a page with figures of every type, and reports of studies.
 foreach(pages IN ITEMS Figures Reports WhatIf)
   string(TOLOWER ${pages} name)
   set(script report_test.py)
@@ -23,5 +23,5 @@ foreach(pages IN ITEMS Figures Reports WhatIf)
                        FIXTURES_REQUIRED web_packages)
   set_property(TEST browser.${name} PROPERTY ENVIRONMENT POESY_PROGRAM=$<TARGET_FILE:poesy>
                POESY_WEB=${PROJECT_BINARY_DIR}/engine/report/web
-               POESY_AXE=${remade}/node_modules/axe-core/axe.min.js POESY_SCREENSHOTS=${PROJECT_BINARY_DIR}/screenshots)
+               POESY_AXE=${remade}/node_modules/axe-core/axe.min.js)
 endforeach()

@@ -58,7 +58,7 @@ class Browser:
     def settle(self):
         """Waits until figures that follow a change of size are drawn: they are within two frames."""
         self.driver.execute_async_script(
-            "const done = arguments[0]; let k = 5;"
+            "const done = arguments[0]; let k = 3;"
             "const next = () => k-- ? requestAnimationFrame(next) : done(); next();")
 
     def run(self, script, *arguments):
@@ -75,10 +75,11 @@ class Browser:
 
     def violations(self, rules=ALL_RULES):
         """What axe-core finds, a line each."""
-        self.run(self.axe_source)
+        if self.run("return typeof axe === 'undefined'"):
+            self.run(self.axe_source)
         found = self.driver.execute_async_script(
             """const done = arguments[1];
-            axe.run(document, {runOnly: arguments[0]}).then((result) => done(result.violations));""",
+            axe.run(document, {runOnly: arguments[0], resultTypes: ["violations"]}).then((result) => done(result.violations));""",
             rules)
         return [f"{rule['id']}: {rule['help']}: {node['html'][:200]}: {node['failureSummary'][:300]}"
                 for rule in found for node in rule["nodes"]]

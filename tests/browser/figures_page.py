@@ -176,21 +176,23 @@ def add_apart(page):
         "layers": [{"label": "B - A", "unit": "mm", "signed": True, "value": page.array([-4, -2, -3, -1])}]}
 
 
-def add_all(page):
-    add_bars(page)
+def add_small_fields(page):
     add_fields(page, "small", 25, 158, 3)
+
+
+def add_other_fields(page):
     add_fields(page, "large", 71, 1738, 4)
     add_fields(page, "flat", 2, 12, 1)
-    add_plane(page)
-    add_lines(page)
-    add_scatter(page)
-    add_what_if(page)
 
 
-def figures_page(web, add=add_all):
-    """The text of the page with the figures that are added."""
+ALL = (add_bars, add_small_fields, add_other_fields, add_lines, add_scatter, add_what_if)
+
+
+def figures_page(web, *adds):
+    """The text of the page with the figures that are added; with all of them where none is named."""
     page = Page()
-    add(page)
+    for add in adds or ALL:
+        add(page)
     sections = "".join(
         f'<section id="{key}" aria-labelledby="{key}-h"><h2 id="{key}-h">{key}</h2><p>Which errors matter.</p>'
         f'<figure data-figure="{key}"><div class="plot"></div><figcaption>What is seen.</figcaption></figure></section>'
