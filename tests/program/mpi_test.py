@@ -106,9 +106,10 @@ class RankTest(ResumptionTest):
 @unittest.skipUnless(HAS_MPI, "this poesy is built without MPI")
 class Mpi(RankTest):
     def test_same_content_as_one_process(self):
-        for kind, study in SMALLER.items():
+        """One kind on one rank to four; each of the others on two, three or four in turn, as all divide their units alike."""
+        for number, (kind, study) in enumerate(SMALLER.items()):
             expected = self.undisturbed(study)
-            for ranks in (1, 2, 3, 4):
+            for ranks in (1, 2, 3, 4) if number == 0 else (2 + number % 3,):
                 with self.subTest(kind=kind, ranks=ranks):
                     out = self.succeeds_on(ranks, "--threads", 1)
                     self.assertEqual(self.content_hash(), expected)
@@ -120,9 +121,14 @@ class Mpi(RankTest):
                     self.assertEqual(list(self.folder.glob("out.h5.*")), [])
                     (self.folder / "out.h5").unlink()
 
+    of_long_study = None  # the content hash of its result, once it is known
+
     def long_study(self):
         study = SENSITIVITY.replace("samples = 12300", "samples = 82300")
-        return self.undisturbed(study)
+        if Mpi.of_long_study is None:
+            Mpi.of_long_study = self.undisturbed(study)
+        self.write("study.toml", study)
+        return Mpi.of_long_study
 
     def test_a_rank_that_is_killed(self):
         expected = self.long_study()
@@ -147,15 +153,15 @@ class Mpi(RankTest):
     def test_ranks_that_are_killed_at_any_moment(self):
         chooser = random.Random(int(os.environ.get("POESY_KILL_SEED", "20240707")))
         expected, seconds = {}, {}
-        for kind, study in STUDIES.items():
-            expected[kind] = self.undisturbed(study)
-            start = time.monotonic()
-            self.succeeds_on(3, "--threads", 1)
-            seconds[kind] = time.monotonic() - start
-            (self.folder / "out.h5").unlink()
         killed = resumed = 0
         while killed < KILLS:
             kind = chooser.choice(list(STUDIES))
+            if kind not in expected:
+                expected[kind] = self.undisturbed(STUDIES[kind])
+                start = time.monotonic()
+                self.succeeds_on(3, "--threads", 1)
+                seconds[kind] = time.monotonic() - start
+                (self.folder / "out.h5").unlink()
             rank = killed % 3
             with self.subTest(killed=killed, kind=kind, rank=rank):
                 self.write("study.toml", STUDIES[kind])

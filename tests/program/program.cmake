@@ -96,7 +96,6 @@ if(NOT POESY_SANITIZE)
   set_tests_properties(program.slurm PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 1200)
   program_test(mpi robustness)
   set_property(TEST program.mpi APPEND PROPERTY ENVIRONMENT POESY_HAS_MPI=$<IF:$<BOOL:${POESY_MPI}>,ON,OFF>)
-  set_tests_properties(program.mpi PROPERTIES PROCESSORS 2)
   # The peak of a sanitizer's memory is its own.
   program_test(memory unit)
 else()
