@@ -16,30 +16,15 @@ from pathlib import Path
 import h5py
 
 from poesy_program import PROGRAM, least_to_work, main
-from resumption import (ADAPTIVE_STUDIES, ALLOCATION, CASES, COUPLING, DESIGNED, FIDELITIES, FORCES, GIVEN, IDENTIFICATION,
-                        MACHINES, MONTE_CARLO, RELATIVE, SENSITIVITY, SOBOL, STUDIES, ZONES, ResumptionTest)
+from resumption import ADAPTIVE_STUDIES, COUPLING, SENSITIVITY, STUDIES, ResumptionTest, with_few_units
 
 MPIRUN = shutil.which("mpirun")
 KILLS = int(os.environ.get("POESY_RANK_KILLS", "3"))
 HAS_MPI = os.environ.get("POESY_HAS_MPI") == "ON"
 ENVIRONMENT = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-SMALLER = {
-    "sensitivity": SENSITIVITY,
-    "monte-carlo": MONTE_CARLO,
-    "machines": MACHINES,
-    "relative responses": RELATIVE,
-    "sobol": SOBOL,
-    "designer's words": DESIGNED.replace("samples = 12300", "samples = 3300"),
-    "given machines": GIVEN.replace("samples = 4200", "samples = 2100"),
-    "forces": FORCES.replace("samples = 300", "samples = 100"),
-    "allocation": ALLOCATION,
-    "allocation of zones": ZONES.replace("samples = 12000", "samples = 4000"),
-    "evaluate": CASES.replace("count = 4000", "count = 300"),
-    "identification": IDENTIFICATION.replace("count = 1500", "count = 100"),
-    "coupling": COUPLING.replace("count = 5000", "count = 500"),
-    "fidelities": FIDELITIES,
-    **ADAPTIVE_STUDIES,
-}
+# Not those whose units are of a kind that is among them.
+FEW_UNITS = {kind: with_few_units(study) for kind, study in STUDIES.items()
+           if kind not in ("by series", "uniform errors", "repeated machines")} | ADAPTIVE_STUDIES
 
 
 class RankTest(ResumptionTest):
@@ -107,7 +92,7 @@ class RankTest(ResumptionTest):
 class Mpi(RankTest):
     def test_same_content_as_one_process(self):
         """One kind on one rank to four; each of the others on two, three or four in turn, as all divide their units alike."""
-        for number, (kind, study) in enumerate(SMALLER.items()):
+        for number, (kind, study) in enumerate(FEW_UNITS.items()):
             expected = self.undisturbed(study)
             for ranks in (1, 2, 3, 4) if number == 0 else (2 + number % 3,):
                 with self.subTest(kind=kind, ranks=ranks):

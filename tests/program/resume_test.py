@@ -19,9 +19,9 @@ class Resume(ResumptionTest):
             with self.subTest(kind):
                 expected = self.undisturbed(study)
                 self.stop_early("--threads", 2)
-                seconds = 0.2
+                seconds = 0.3
                 while (done := self.resume("--max-wall", f"{seconds} s", "--threads", 1)).returncode == 4:
-                    seconds *= 1.5
+                    seconds *= 2.0
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertEqual(self.content_hash(), expected)
 
@@ -100,8 +100,9 @@ class Resume(ResumptionTest):
             self.assertIn(b"out.h5 was changed since it was written", done.stderr)
 
     def test_more_samples(self):
+        """Units have 1000 samples, so that the last one grows, or others follow it whether it was full or not."""
         for study in (SENSITIVITY, MONTE_CARLO, FIDELITIES, DESIGNED):
-            for old, new in (("12300", "15000"), ("12000", "12300"), ("300", "12300"), ("3000", "12001")):
+            for old, new in (("2300", "3000"), ("2000", "2300"), ("300", "2300"), ("1000", "2001")):
                 with self.subTest(study=study, old=old, new=new):
                     expected = self.undisturbed(study.replace("12300", new))
                     self.write("study.toml", study.replace("12300", old))
@@ -120,23 +121,23 @@ class Resume(ResumptionTest):
     def test_more_samples_of_an_unfinished_run(self):
         for study in (SENSITIVITY, MONTE_CARLO, FIDELITIES, DESIGNED):
             with self.subTest(study=study):
-                longest = study.replace("12300", "14600")
+                study = study.replace("12300", "5300")
+                longest = study.replace("5300", "7600")
                 expected = self.undisturbed(longest)
                 self.write("study.toml", study)
                 self.stop_early()
-                for samples in ("13500", "14600"):
-                    self.write("study.toml", study.replace("12300", samples))
+                for samples in ("6500", "7600"):
+                    self.write("study.toml", study.replace("5300", samples))
                     self.stop_early("--resume")
                 self.assertEqual(self.resume_to_end(), expected)
 
     def test_extending_solves_only_what_is_new(self):
         for study in (SENSITIVITY, MONTE_CARLO):
             with self.subTest(study=study):
-                self.write("study.toml", study)
-                self.undisturbed(study.replace("12300", "12999"))
-                self.write("study.toml", study)
+                self.undisturbed(study.replace("12300", "2999"))
+                self.write("study.toml", study.replace("12300", "2300"))
                 self.succeeds("run", "study.toml", "-o", "out.h5", "--keep-checkpoint", "--quiet")
-                self.write("study.toml", study.replace("12300", "12999"))
+                self.write("study.toml", study.replace("12300", "2999"))
                 done = self.poesy("run", "study.toml", "-o", "out.h5", "--resume")
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertIn(b"continuing from out.h5.part", done.stderr)
