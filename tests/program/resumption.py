@@ -220,11 +220,10 @@ STUDIES = {"sensitivity": SENSITIVITY, "by series": BY_SERIES, "monte-carlo": MO
            "designer's words": DESIGNED, "given machines": GIVEN, "forces": FORCES,
            "allocation": ALLOCATION, "allocation of zones": ZONES, "evaluate": CASES, "identification": IDENTIFICATION,
            "coupling": COUPLING, "fidelities": FIDELITIES}
-# For tests that do not stop a run: each study with a few units only, the last of which is smaller.
-FEWER = {"samples = 12300": "samples = 2300", "samples = 62300": "samples = 12300", "samples = 6200": "samples = 2200",
-         "samples = 4200": "samples = 2100", "samples = 300\n": "samples = 100\n", "samples = 30000": "samples = 5000",
-         "samples = 12000": "samples = 3000", "count = 4000": "count = 300", "count = 1500": "count = 100",
-         "count = 5000": "count = 500"}
+# For tests that do not stop a run: each study with a few units only, of which five shards have one each.
+FEWER = {"samples = 12300": "samples = 4300", "samples = 62300": "samples = 12300", "samples = 6200": "samples = 4200",
+         "samples = 300\n": "samples = 100\n", "samples = 30000": "samples = 5000", "samples = 12000": "samples = 4000",
+         "count = 4000": "count = 300", "count = 1500": "count = 100", "count = 5000": "count = 500"}
 
 
 def with_few_units(study):
