@@ -22,6 +22,8 @@ measured = ["z"]
 noise    = { z = "10 um" }
 combinations.radius = { foot_x_1 = 1, foot_x_2 = 1, foot_x_3 = 1 }
 """
+# Two units of 40 machines, the second of which is smaller.
+TWO_UNITS = 45
 PLAIN = """\
 format = "poesy-study"
 version = 1
@@ -30,7 +32,7 @@ poses = { select = "file", file = "delta-places.csv" }
 errors.linear = { distribution = "normal", sigma = "0.1 mm" }
 [analysis]
 kind = "allocation"
-samples = 300
+samples = 200
 yield = 0.9
 sigmas = 3
 limits = { z = "0.1 mm", position = "0.4 mm" }
@@ -41,7 +43,7 @@ cost = { law = "reciprocal", b = 1, unit = "mm" }
 bounds = ["0.01 mm", "1.5 mm"]
 """
 STUDY = PLAIN + CALIBRATION
-SMALL = STUDY.replace("samples = 300", "samples = 60").replace("yield = 0.9", "yield = 0.8")
+SMALL = STUDY.replace("samples = 200", f"samples = {TWO_UNITS}").replace("yield = 0.9", "yield = 0.8")
 # Alpha = 1e-5 of one comparison of two shares.
 SIGMAS = 4.5
 

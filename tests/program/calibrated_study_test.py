@@ -21,7 +21,7 @@ combinations.side_1 = { foot_y_1 = 1 }
 combinations.side_2 = { foot_y_2 = 1 }
 combinations.rods   = { rod_1 = 1, rod_2 = 1, rod_3 = 1 }
 """
-MACHINES = 500
+MACHINES = 400
 # Of a standard normal number: 28 comparisons of shares and root mean squares, alpha = 1e-5 together.
 SIGMAS = 5.1
 
@@ -82,11 +82,11 @@ class CalibratedStudy(ProgramTest):
 
     def test_three_yields_are_those_of_three_studies(self):
         """Without calibration and with the best correction: the same machines in studies of their own."""
-        self.ran(with_calibration(["zero_*", "radius"], machines=500))
+        self.ran(with_calibration(["zero_*", "radius"], machines=200))
         with h5py.File(self.folder / "r.h5") as file:
             found = {name: file[f"yield/calibration/{name}"][()] for name in ("uncalibrated", "best", "fitted",
                                                                              "measured", "measured_poses")}
-        plain = STUDY.split("[analysis.calibration]")[0].replace("20000", "500")
+        plain = STUDY.split("[analysis.calibration]")[0].replace("20000", "200")
         for name, text in (("uncalibrated", plain),
                            ("best", plain.replace("[analysis]", "[analysis]\ncalibrated = true"))):
             self.ran(text, output="other.h5")
@@ -105,7 +105,7 @@ class CalibratedStudy(ProgramTest):
 
     def test_same_bits(self):
         """On threads and shards, after a stop, and as the continuation of a shorter study."""
-        text = with_calibration(["zero_*", "radius"], machines=420)
+        text = with_calibration(["zero_*", "radius"], machines=130)  # three units of 40 and a smaller one
         self.ran(text, "--threads", "1", output="one.h5")
         expected = self.content_hash("one.h5")
         self.ran(text, "--threads", "2", output="two.h5")
@@ -117,7 +117,7 @@ class CalibratedStudy(ProgramTest):
         self.ran(text, "--threads", "1", "--max-wall", "0.000001 s", output="stopped.h5", code=4)
         self.ran(text, "--resume", output="stopped.h5")
         self.assertEqual(self.content_hash("stopped.h5"), expected)
-        self.ran(text.replace("samples = 420", "samples = 100"), "--keep-checkpoint", output="longer.h5")
+        self.ran(text.replace("samples = 130", "samples = 60"), "--keep-checkpoint", output="longer.h5")
         self.ran(text, "--resume", output="longer.h5")
         self.assertEqual(self.content_hash("longer.h5"), expected)
         self.ran(text.replace("5 um", "6 um"), output="other.h5")
