@@ -14,10 +14,11 @@ namespace poesy::app {
 
 double seconds_of_long_run(const Study& study, const Model& model, const PoseSet& poses, std::size_t threads,
                            std::size_t runs) {
-  // With fewer draws a run is short: nearly every solve belongs to a draw, and a solve takes far less than a second.
+  // A run with fewer draws is shorter than kLongRun: nearly every solve belongs to a draw, and a solve takes far less
+  // than 8 ms, with which as many solves on one thread would take kLongRun.
   constexpr double kFewDraws = 1e7;
-  // The first estimate is from single pieces of work and so is rough; a run below this limit is surely shorter than
-  // kLongRun.
+  // The first estimate of the duration is rough, because it is measured on single pieces of work. A run whose first
+  // estimate is below this limit is surely shorter than kLongRun.
   constexpr double kShort = kLongRun / 4.0;
   constexpr double kTrial = 0.25;  // s, duration of the second, more exact measurement
   const double draws = static_cast<double>(runs) * static_cast<double>(study.analysis.samples) *

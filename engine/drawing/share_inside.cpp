@@ -52,8 +52,10 @@ double ends_inside(double k, double correlation, bool one_direction) {
       0.0, k);
 }
 
-/// The probability that all extreme points of a plane are within +-half: |z| of the middle plus the largest lift of an
-/// extreme point is at most `half`. middle, tilt: standard deviations of z and of each lift error (m).
+/// The probability that all extreme points of a plane are at most `half` above or below their nominal places. This is
+/// so if |z| plus the largest lift is at most `half`, where z is the displacement of the plane's middle, and the
+/// largest lift is that of the extreme point which the tilt raises most. middle: standard deviation of z. tilt:
+/// standard deviation of each of the two lift errors. Lengths are in m.
 double plane_inside(FeatureKind kind, double half, double middle, double tilt) {
   const auto density = [&](double lift) {
     const double x = lift / tilt;

@@ -9,8 +9,8 @@
 /// bound on the cost is computed from the sum of these minima.
 namespace poesy {
 
-/// The prices of a unit of size, of a part and of the inner part of its pair (Within in least_cost.h). A price is the
-/// sum over the limits of multiplier x effect.
+/// The price of a unit of a part's own size, and the price of a unit of the size of the inner part of its pair (Within
+/// in least_cost.h). A price is the sum over the limits of multiplier x effect.
 struct Prices {
   double own;          ///< price of the part's own size, >= 0
   double inner = 0.0;  ///< price of the size of the pair's inner part, 0 without a pair; may be negative, but own +
@@ -51,7 +51,8 @@ struct BestResponse {
   std::size_t main = 0;            ///< position of the process with the largest weight
   InnerResponse inner;             ///< inner part of a pair; zeros for a part that is in no pair
 
-  Prices prices() const { return {price, inner.price}; }  ///< The prices of the part and of its pair's inner part.
+  /// The two given prices: that of the part's own size, and that of the size of the inner part of its pair (Within).
+  Prices prices() const { return {price, inner.price}; }
 };
 
 /// Computes the best sizes for these prices. The weight of a process in the mix is proportional to exp(-lagrangian /

@@ -135,10 +135,10 @@ class PoseFold {
 };
 
 /// The sums of the cells of a plan, or of a shard's cells. If the last unit of a cell has fewer than Plan::kUnitSamples
-/// samples, its sums are separate, because in a study with more samples another unit takes its place. The sums are in a
-/// store, a type with values of R responses for several cells:
+/// samples, its sums are kept separately: a study with more samples has a full unit in its place, so its run continues
+/// from the sums of the full units only. `Store` is a type that holds the sums of several cells. It has these members:
 ///
-///     Store(std::size_t responses, std::size_t cells)    without samples; also Store() without cells
+///     Store(std::size_t responses, std::size_t cells)    sums of no samples; Store() has no cells
 ///     std::vector<SolveCounts> solves                    [cells]
 ///     void merge(std::size_t cell, const Unit&)          adds later samples of a cell
 ///     void merge(Store later)                            adds later samples of each cell

@@ -44,20 +44,23 @@ BinSpread bin_spread(std::span<const double> quantiles);
 /// S: `signal`, `noise` and `tails`, each given by its coefficients of 1, S and S^2.
 struct BinnedVariance {
   std::uint64_t samples = 0;  ///< number of samples that the estimate uses
-  double between = 0.0;  ///< estimate of Var(E[y | u]), the variance of the mean response y given the error's uniform
-                         ///< number u, without the bias from noise within bins; may be negative
-  double total = 0.0;    ///< estimate of Var(y)
+  /// Estimate of Var(E[y | u]), without the bias from noise within bins; may be negative. E[y | u] is the mean of the
+  /// response y for a given value of u, the uniform number from which the error is drawn.
+  double between = 0.0;
+  double total = 0.0;              ///< estimate of Var(y)
   std::array<double, 3> signal{};  ///< part from the product of the bins' noise and the effect
   std::array<double, 3> noise{};  ///< part from the noise of the means and variances of the bins, as for normal samples
   std::array<double, 3> tails{};  ///< part added by kurtosis and skewness within bins; used only if positive
 };
 
-/// Computes the variance from the sums of a response in the bins of an error. all: the moments of the same samples.
-/// Uses 16, 8 or 4 bins if there are fewer than 16 samples for each bin, or a bin has fewer than four. With fewer than
-/// kFewestIndexSamples samples all numbers are NaN. The part of an effect within bins is estimated as that of a
-/// straight line over the error (spread) in each bin, with the slope between the neighbouring bins. Bins between which
-/// the error decreases, as in the middle of a shifted distribution, are not neighbours. Without a spread this part is
-/// left out.
+/// Computes the estimates for one error from the sums of a response in bins of the error's uniform number u. all: the
+/// moments of the same samples. Uses 16, 8 or 4 bins if there are fewer than 16 samples for each bin, or a bin has
+/// fewer than four. With fewer than kFewestIndexSamples samples all numbers are NaN.
+///
+/// The response also varies within a bin with the error. This variance is estimated as that of a straight line over the
+/// error (spread), with the slope between the two neighbouring bins; without a spread it is left out. Two bins are not
+/// neighbours if the error decreases from one to the next: a shifted distribution jumps back at u = 1/2, from the
+/// largest error of its low half to the smallest one of its high half.
 ///
 /// `between` underestimates Var(E[y | u]). Relative bias with 32 bins, first without a spread and then with one, for
 /// these responses (z is a standard normal error):

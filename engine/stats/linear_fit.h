@@ -40,8 +40,8 @@ class LinearFitSums {
   /// Adds machines. errors: [errors x machines] standardised. numbers: [numbers x machines]; they must be finite for
   /// machines that count. counts: [machines] 1 if the machine counts; 0 if not, and its numbers are ignored.
   void add(std::span<const double> errors, std::span<const double> numbers, std::span<const std::uint8_t> counts);
-  /// Adds the sums of later machines. Merging in the same order gives the same bits. Precondition: the same errors and
-  /// numbers.
+  /// Adds the sums of machines that come later. Merging in the same order gives the same bits. Precondition: `later`
+  /// was made for as many errors and as many fitted numbers (rows) as this object.
   void merge(const LinearFitSums& later);
 
   std::uint64_t machines() const { return machines_; }  ///< The number of machines that count.

@@ -44,11 +44,11 @@ struct MachineCounts {
   friend bool operator==(const MachineCounts&, const MachineCounts&) = default;
 };
 
-/// Collects the outcomes of a block of machines, pose after pose. Memory: 17 bytes for each response of a machine, for
-/// any number of poses. A response whose limit is not plain (ValueLimit::is_plain) takes 8 bytes more for each pose. A
-/// machine with a sample that does not count at some pose is rejected (strict). Its largest magnitude and root mean
-/// square are NaN, because the values over the other poses would be too good. Leave these machines, for which solved()
-/// is 0, out of distributions, and state their number (MachineCounts::unsolved).
+/// Collects the outcomes of a block of machines, pose after pose. Memory: 17 bytes for each machine and response, for
+/// any number of poses. For a response whose limit is not plain (ValueLimit::is_plain), each machine takes 8 bytes more
+/// for each pose. A machine whose sample does not count at one pose or more is a reject (Rejects::strict), and solved()
+/// is 0 for it. Its largest magnitude and root mean square are NaN, because those over the other poses alone would be
+/// too small. Leave such machines out of distributions, and state their number (MachineCounts::unsolved).
 class MachineBlock {
  public:
   /// limits: one for each response; infinite for a response without a limit. machines: the number of machines.
@@ -80,8 +80,9 @@ class MachineBlock {
   std::vector<double> values_of(std::size_t response, std::size_t machine) const;
   /// [machines] 1 if the limit is broken at the poses where the machine's sample counts, else 0.
   std::vector<std::uint8_t> beyond(std::size_t response) const;
-  /// The rejects of a response at a pose, for a limit over poses. beyond: what the function beyond() returns for this
-  /// response.
+  /// The rejects of a response at one pose, if its limit judges all poses of a machine together (a share of the poses,
+  /// or the spread over them); see MachineCounts::at_pose. beyond: [machines] what the function beyond() returns for
+  /// this response.
   Rejects rejects_over_poses(std::size_t response, std::size_t pose, std::span<const std::uint8_t> beyond) const;
 
   std::vector<ValueLimit> limits_;    ///< [responses] limit of each response

@@ -52,19 +52,19 @@ struct Checkpoint {
 /// run asks for more samples.
 void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& checkpoint, const std::string& path);
 
-/// Writes a checkpoint file to `sink`, piece by piece and in one pass. Returns the places of the states. The file has,
-/// encoded as in engine/base/bytes.h:
+/// Writes a checkpoint file to `sink`, piece by piece and in one pass. Returns where in the file the state of each
+/// stage is. The file consists of the following entries, encoded as in engine/base/bytes.h:
 ///
 ///     16 bytes "poesy-checkpoint"
 ///     number   version of the format, 3
 ///     text     poesy_version, git_commit, model
 ///     number   seed, samples
 ///     text     study, poses, shard
-///     real     seconds that the run took, and of these for checkpoints
-///     number   count of the stages; then each stage as blocks that follow each other, the last of which is empty
-///     32 bytes SHA-256 of everything before
+///     real     seconds that the run took so far; how many of them were spent on checkpoints
+///     number   how many stages there are; then the state of each stage, as blocks of which the last one is empty
+///     32 bytes SHA-256 of all bytes before it
 ///
-/// Only the version of the program that wrote a state can read it. So the identity contains this version.
+/// A state can be read only by the version of the program that wrote it, so the identity names this version.
 std::vector<StoredState> write_checkpoint(const CheckpointIdentity& identity, const RunTime& time,
                                           std::span<const ByteSource> stages, const ByteWriter::Sink& sink);
 

@@ -19,8 +19,9 @@ namespace {
 
 using Shape = Distribution::Shape;
 
-/// The smallest size of an error, SI. The effect of such an error may be mere rounding, which is far smaller than the
-/// error. Even then, the fourth power of the effect is far above the smallest double.
+/// The smallest size of an error that a study may state, SI. The effect of an error may be nothing but rounding, about
+/// 1e-16 times the error. For an error of this size even the fourth power of such an effect, 1e-184, is far above the
+/// smallest double, so that no moment of a response underflows.
 constexpr double kSmallest = 1e-30;
 
 /// The largest number of values of a measured distribution. Every result stores them, so they must stay few.

@@ -71,7 +71,8 @@ std::vector<double> pose_weights(const AllocationResult& found) {
   return weights;
 }
 
-/// Whether the study that was read again belongs to this result.
+/// Whether the page can predict yields for this result. The study, which was read again from the result's text, must
+/// be an allocation without calibration, with as many errors, parts and poses as the result.
 bool fits(const ReportedResult& reported, const AllocationResult& found) {
   const Study& study = *reported.study;
   if (study.analysis.kind != &kAllocationStudy || study.analysis.calibration != nullptr) return false;

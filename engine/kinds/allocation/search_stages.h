@@ -72,9 +72,11 @@ ToleranceDesign scale_screened(const SearchProblem& problem, const ToleranceDesi
 /// Scores of parts: sums of x^2 - 1 over some machines, where x is an error divided by its standard deviation. A
 /// positive score means that the part's errors are larger in these machines than in all.
 struct PartScores {
-  std::vector<double> of_part;  ///< [parts] score of each part: the sum over its errors, each times its growth with the
-                                ///< tolerance
-  std::vector<bool> is_sure;    ///< [parts] whether the score is significant (kSignificance)
+  /// [parts] Score of each part: the sum, over its errors, of the error's score times the error's factor `growth`. This
+  /// factor says by how many per cent the error's standard deviation grows if the part's tolerance grows by 1 %
+  /// (ToleranceProgramme::growth()).
+  std::vector<double> of_part;
+  std::vector<bool> is_sure;  ///< [parts] whether the score is significant (kSignificance)
 };
 
 /// The scores of parts in these machines of a design.

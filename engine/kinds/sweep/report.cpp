@@ -299,9 +299,11 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
   return all;
 }
 
-/// A study cannot be of kind `sweep`, so there is nothing to run.
+/// Runs nothing. The command `poesy sweep` makes a sweep from studies of other kinds, and no study file can state the
+/// kind `sweep`. But every Kind needs a function that runs its studies.
 std::optional<StudyResult> run_nothing(const StudyRun&) { return std::nullopt; }
 
+/// Returns an empty outlook, because no study has the kind `sweep`. But every StudyKind needs such a function.
 AtPose nothing_at_pose(const Study&) { return {0.0, "values", 0.0, "solves"}; }
 
 const StudyKind kSweepStudy{
