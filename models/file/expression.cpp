@@ -61,7 +61,8 @@ class Parser {
   [[noreturn]] void unexpected() {
     const bool ended = at_ >= text_.size();
     fail(at_, ended ? "ends too early" : "cannot be read at '" + printable(text_.substr(at_), 20) + "'",
-         "write numbers with units, parameters, + - * / ^ ( ), sqrt, sin, cos, tan, atan, atan2 and pi, e.g. \"a + 20 mm\"");
+         "write numbers with units, parameters, + - * / ^ ( ), sqrt, sin, cos, tan, atan, atan2 and pi, "
+         "e.g. \"a + 20 mm\"");
   }
 
   void skip() {

@@ -10,8 +10,8 @@
 #include "models/file/physical.h"
 
 /// Expressions in mechanism files. They consist of numbers, parameters of the geometry, + - * / ^ ( ), sqrt, sin, cos,
-/// tan, atan, atan2, pi, and units after numbers: "a + 20 mm", "pi * d^4 / 64", "20 N/um". Dimensions are evaluated together
-/// with values, so a message names the place inside the expression.
+/// tan, atan, atan2, pi, and units after numbers: "a + 20 mm", "pi * d^4 / 64", "20 N/um". Dimensions are evaluated
+/// together with values, so a message names the place inside the expression.
 ///
 /// A name directly after a number is a unit: "2 g" is two grams even if a parameter is called g, and "2 * g" is twice
 /// the parameter. So a parameter may have the name of a unit, except of a unit of length or angle. A unit is written

@@ -219,6 +219,12 @@ class Report(ProgramTest):
         self.assertIn("its kind is 'monte-carlo', not 'sensitivity'", self.refused(2, "r.h5", "mc.h5"))
         self.assertEqual(list(self.folder.glob("*.html")), [])
 
+    def test_says_over_which_poses_indices_add_up(self):
+        self.write("mc.toml", MONTE_CARLO)
+        self.succeeds("run", "mc.toml", "-o", "mc.h5", "--quiet")
+        self.succeeds("report", "mc.h5")
+        self.assertIn("Variances are added up over 6 poses. ", (self.folder / "mc.html").read_text())
+
     def test_has_the_cells_of_show(self):
         self.succeeds("report", "r.h5")
         tables = self.page("r.html").tables

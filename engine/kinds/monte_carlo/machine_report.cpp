@@ -250,10 +250,9 @@ void add_effects_section(const StoredResult& result, std::span<const Table> tabl
   };
   section.paragraph(fmt::format(
       "The first-order index of an error is the part of a response's variance that goes when the error is known. "
-      "Variances are {}. A response without sign is not additive although the mechanism is nearly "
-      "linear, "
-      "so its indices sum to less than 1: read them with the shares of the scatter.",
-      counted(found.s1_poses.size(), "pose", "poses")));
+      "Variances are {}. A response without sign is not additive although the mechanism is nearly linear, so its "
+      "indices sum to less than 1: read them with the shares of the scatter.",
+      added_up_text(result)));
   Bars bars{{{"response", names_of(result.responses, order)}},
             {quantity("first-order index S1", "S1", found.effects)},
             names_of(result.factors)};
