@@ -46,10 +46,12 @@ class BlockSolver {
   Solver solver_;
   Continuation continuation_;
   ErrorFrames frames_;
-  std::vector<double> values_;             ///< scratch: values of varied components, see PoseProblem::with()
-  std::vector<double> responses_;          ///< [responses x stride] responses of each sample
-  std::vector<KernelEnd> ends_;            ///< [stride] how the kernel ended each sample
-  std::vector<double> nearing_;            ///< [count] from Closure::find_nearing(): how near a loop is to opening
+  std::vector<double> values_;     ///< scratch: values of varied components, see PoseProblem::with()
+  std::vector<double> responses_;  ///< [responses x stride] responses of each sample
+  std::vector<KernelEnd> ends_;    ///< [stride] how the kernel ended each sample
+  /// [count] First-order change of ln det N of each sample, from Closure::find_nearing(). A value far below zero means
+  /// that a loop may be impossible to close.
+  std::vector<double> nearing_;
   std::vector<std::uint32_t> iterations_;  ///< [stride] iterations of each sample
   std::vector<double> states_;             ///< [rows of a state x KernelStart::kTerms] states at the Chebyshev nodes
   std::vector<double> mismatch_;           ///< [6 limbs x stride] mismatch, see KernelBlock

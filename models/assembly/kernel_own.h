@@ -76,7 +76,7 @@ class OwnStep {
   struct Limb {
     T xi[6];                                     ///< mismatch xi
     T columns[6 * kMostOwnJoints];               ///< columns of S: twists of the passive joints
-    T turned[6 * kMostOwnJoints];                ///< columns of D = E(-ad xi) S
+    T turned[6 * kMostOwnJoints];                ///< columns of D = E(-ad xi) S, with E of OwnStep
     T inverse[kMostOwnJoints * kMostOwnJoints];  ///< inverse of the limb's matrix
     T by_to[6 * kMostOwnJoints];                 ///< dq per unit of V_b
     T by_from[6 * kMostOwnJoints];               ///< dq per unit of V_a

@@ -52,7 +52,8 @@ class AssemblyEvaluator final : public Evaluator {
   std::map<std::vector<double>, PoseProblem> problems_;
 };
 
-/// The solution of one sample without varied errors, by the solvers that BlockSolver uses if the kernel fails.
+/// The solution of the one machine whose errors are all constant (sample.errors). The solvers are those that
+/// BlockSolver uses if the kernel fails.
 Solution exact_solution(const AssemblyModel& model, const Nominal& at, const SampleBlock& sample,
                         const SolverOptions& options) {
   Closure closure(model, at);

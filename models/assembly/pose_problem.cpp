@@ -414,7 +414,7 @@ void PoseProblem::set_segments(std::size_t e) {
 void PoseProblem::set_map() {
   constexpr std::size_t kRows = KernelMap::kRows;
   KernelMap& map = problem_.map;
-  std::vector<Index> column;  // changed component of each row of values
+  std::vector<Index> column;  // for each varied value, the column of coordinates_ that belongs to its component
   Eigen::VectorXd offset = coordinates_.rightCols(1);
   for (std::size_t n = 0; n < entries_.size(); ++n) {
     if (entries_[n].row >= 0) {

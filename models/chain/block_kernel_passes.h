@@ -108,8 +108,8 @@ void BlockKernel<T, Shape>::add_mapped(const KernelMap& map, std::size_t first, 
   if (at < samples_.count) add(value_ + v * capacity_ + at, capacity_, at);
 }
 
-/// Computes residuals, responses and status of one batch of samples from their coordinates y (KernelMap). known_rows:
-/// number of coordinates if it is known at compile time, else 0.
+/// Computes the mismatch delta_mu, the responses and the status of one batch of samples from the coordinates y of their
+/// mismatch (see KernelMap). known_rows: number of coordinates if it is known at compile time, else 0.
 template <class T, class Shape>
 template <std::size_t known_rows>
 void BlockKernel<T, Shape>::finish_mapped(const KernelMap& map, std::size_t at) {
@@ -132,7 +132,7 @@ void BlockKernel<T, Shape>::finish_mapped(const KernelMap& map, std::size_t at) 
 }
 
 /// Computes the responses of a batch of samples (Du et al. 2022, Eqs. 45-50): the means over the pairs of the angular
-/// and of the linear norms, and the largest norm of the whole mismatch.
+/// and of the linear norms, and the largest norm of a pair's whole mismatch [omega; v].
 template <class T, class Shape>
 void BlockKernel<T, Shape>::judge(std::size_t at) {
   T angular(0.0), linear(0.0), largest(0.0);

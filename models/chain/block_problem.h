@@ -96,13 +96,14 @@ struct KernelStart {
 /// zero.
 inline constexpr std::size_t kMapRows = 3;
 
-/// A linear map from errors to residuals (first order). The map computes a few coordinates y of the residuals (see
-/// ResidualSpace): y = constant + sum over the varied errors v of effects[v] x (value of v).
+/// A linear map from errors to delta_mu (first order). delta_mu is the mismatch of each pair of limbs, a twist [omega;
+/// v] (rad, m). The map computes a few coordinates y of delta_mu (see ResidualSpace): y = constant + sum over the
+/// varied errors v of effects[v] x (value of v).
 struct KernelMap {
   std::size_t rows;        ///< number of components of y
-  const double* constant;  ///< [rows] coordinates y that the constant errors cause
+  const double* constant;  ///< [rows] coordinates y of a sample whose varied errors are 0
   const double* effects;   ///< [varied x rows] change of y per unit of each varied error
-  const double* delta_mu;  ///< [6 pairs x rows] delta_mu per unit of each component of y
+  const double* delta_mu;  ///< [6 pairs x rows] change of delta_mu per unit of each component of y
 };
 
 /// The motion of the platform in the base frame (m, rad). Let xi_i = log(g_i g_nominal^-1) be the motion of limb i's

@@ -109,14 +109,15 @@ std::string axis_text(const FeatureError& error, const Matrix3& axes) {
                      triple_text(shown));
 }
 
-/// The errors of a feature: with a zone between two planes, only those across these planes; with a tolerance of
-/// orientation but none of location, only tilts.
+/// The errors of a feature that its zones limit. If the zones lie between two parallel planes, these are only the
+/// errors along the normal of the planes. If the feature has a tolerance of orientation but none of location, they are
+/// only tilts.
 std::vector<FeatureError> errors_of(const FeatureLines& lines, const Feature& feature) {
   std::vector<FeatureError> all = all_errors(feature.kind, feature.size);
   const bool only_turns = feature.orientation && !feature.location;
   std::erase_if(all, [&](const FeatureError& error) {
-    const bool is_across = feature.one_direction && !name(error.direction).ends_with(lines.along);
-    return is_across || (only_turns && !error.is_tilt);
+    const bool is_within_planes = feature.one_direction && !error.name.ends_with(lines.along);
+    return is_within_planes || (only_turns && !error.is_tilt);
   });
   return all;
 }

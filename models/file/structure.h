@@ -26,8 +26,8 @@ std::string small_length_text(double metres);
 /// The description of a coordinate.
 std::string coordinate_text(const Coordinate& coordinate);
 
-/// The sketch of the joints at home as the file states them: the elementary joints of one joint are shown as one joint.
-/// It includes the features of the drawing.
+/// The sketch of the mechanism at home, with the features of its drawing. The sketch shows each joint as the file
+/// states it; for example, a universal joint is one joint, although it consists of two elementary joints.
 Sketch sketch_of(const Mechanism& mechanism);
 
 /// Clauses about coordinates whose value at home is outside their workspace, one for each.
