@@ -14,7 +14,7 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 HEADER = re.compile(r"`((?:\w+/)+\w+\.h)`")
 SKIPPED = {"build", ".git"}
 DECISIONS = "engine/docs/decisions"
-TITLE = re.compile(r"# D(\d+)\. .+\n\nStatus: (accepted|superseded by \[D\d+\]\(.+\))\. Date: \d{4}-\d\d-\d\d\. Room: [\w/]+\.\n")
+TITLE = re.compile(r"# D(\d+)\. .+\n\nStatus: (accepted|superseded by \[D\d+\]\(.+\))\. Date: \d{4}-\d\d-\d\d\. Concerns: [\w/ ]+\.\n")
 MOST_LINES = 40
 
 
@@ -56,7 +56,7 @@ def decision_problems(root):
         text = page.read_text(encoding="utf-8")
         title = TITLE.match(text)
         if not title or int(title[1]) != int(page.name[:4]):
-            yield f"{DECISIONS}/{page.name}: begin with '# D{int(page.name[:4])}. TITLE' and 'Status: ... Date: ... Room: ...'"
+            yield f"{DECISIONS}/{page.name}: begin with '# D{int(page.name[:4])}. TITLE' and 'Status: ... Date: ... Concerns: ...'"
         elif f"- [D{title[1]}]({page.name})" not in index:
             yield f"{DECISIONS}/README.md: does not list {page.name}"
         if text.count("\n") > MOST_LINES:

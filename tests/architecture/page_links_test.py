@@ -43,7 +43,7 @@ class PageLinksTest(unittest.TestCase):
             return [problem.split(": ", 1)[1] for problem in page_links.decision_problems(Path(folder))]
 
     def test_decisions(self):
-        right = "# D7. A title\n\nStatus: accepted. Date: 2026-01-02. Room: kinds/sobol.\n\nText.\n"
+        right = "# D7. A title\n\nStatus: accepted. Date: 2026-01-02. Concerns: the folder engine/kinds/sobol.\n\nText.\n"
         self.assertEqual(self.found_in_decision(right), [])
         self.assertEqual(self.found_in_decision(right.replace("accepted", "superseded by [D8](0008-b.md)")), [])
         self.assertEqual(self.found_in_decision(right, index=""), ["does not list 0007-a.md"])
@@ -51,7 +51,7 @@ class PageLinksTest(unittest.TestCase):
                          ["has more than 40 lines; move measurements to bench/README.md"])
         for wrong in ("D7.", "accepted", "2026-01-02", "kinds/sobol"):
             problems = self.found_in_decision(right.replace(wrong, ""))
-            self.assertEqual(problems, ["begin with '# D7. TITLE' and 'Status: ... Date: ... Room: ...'"])
+            self.assertEqual(problems, ["begin with '# D7. TITLE' and 'Status: ... Date: ... Concerns: ...'"])
 
 
 if __name__ == "__main__":
