@@ -49,7 +49,7 @@ class PageLinksTest(unittest.TestCase):
         self.assertEqual(self.found_in_decision(right, index=""), ["does not list 0007-a.md"])
         self.assertEqual(self.found_in_decision(right + 40 * "Text.\n"),
                          ["has more than 40 lines; move measurements to bench/README.md"])
-        for wrong in ("D7.", "accepted", "2026-01-02", "kinds/sobol"):
+        for wrong in ("D7.", "accepted", "2026-01-02", "the folder engine/kinds/sobol"):
             problems = self.found_in_decision(right.replace(wrong, ""))
             self.assertEqual(problems, ["begin with '# D7. TITLE' and 'Status: ... Date: ... Concerns: ...'"])
 
