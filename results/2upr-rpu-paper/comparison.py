@@ -273,15 +273,15 @@ HEAD = """# The first paper compared with poesy
 X. Du, B. Wang, J. Zheng, Machines 2022, 10(11), 990. Written by `./regenerate`; no number is typed by hand: published
 figures come from [published/](published), ours from the exported tables of the studies in [studies/](studies).
 
-**converged**: Newton's method; draws that do not converge are left out. **published procedure**: Gauss-Newton, 50 iterations, and the
-last iterate is kept whether it converged or not. They differ where solves need more than 50 iterations: an unfinished iterate can be far
-off, so that a few draws determine an index. Where both differ from the paper, the cause is the printed equations, the inferred workspace
-or the unknown draws: [README.md](README.md) explains it table by table.
+**converged**: Newton's method; draws that do not converge are left out. **published procedure**: Gauss-Newton, 50 iterations, and the last
+iterate is kept whether it converged or not. Both columns differ where solves need more than 50 iterations: an unfinished iterate can be far
+off, so that a few draws determine an index. Where both columns differ from the paper, the cause is the printed equations, the inferred
+workspace or the unknown draws: [README.md](README.md) explains it table by table.
 
 The tables depend on the unit, the frame and the size of the errors: lengths are in metres, the base frame's origin is the paper's, and
-errors have the stated sizes, 1 mm and 1 degree in Figures 8 and 9 and Table 10. The scheme weighs radians against metres at that origin,
-so another unit, frame or size gives other numbers and another ranking; [2upr-rpu-sensitivity](../2upr-rpu-sensitivity/README.md) shows
-them, and a metric without this dependence.
+errors have the stated sizes, 1 mm and 1 degree in Figures 8 and 9 and Table 10. The paper's method weighs radians against metres at that
+origin, so another unit, frame or size of errors gives other numbers and another ranking;
+[2upr-rpu-sensitivity](../2upr-rpu-sensitivity/README.md) shows them, and a metric without this dependence.
 """
 
 
