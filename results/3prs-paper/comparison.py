@@ -116,11 +116,12 @@ def maxima(folder):
     within = {way: sum(abs(found[key] / theirs[key] - 1) <= 0.1 for key in theirs) for way, found in ways.items()}
     best, most = min(spread, key=spread.get), max(within, key=within.get)
     return ["## Figures 8-11: the largest errors of the tool tip on the first trajectory, errors of 0.1 mm", "",
-            "In mm. Neither the tool's length nor the limbs and components with errors are printed; the last two columns are the "
-            f"closest of {len(ways)} readings (interpretations), for each maximum separately.", "",
+            "The table has the errors in mm. The paper prints neither the tool's length nor the limbs and components that have errors, "
+            f"so it can be read in {len(ways)} ways (readings). The last two columns have the closest reading, for each maximum "
+            "separately.", "",
             *markdown(["source", "axis", "printed", *shown, "closest", "its reading"], lines),
-            f"**Not reproduced.** No single reading gives them all: the one whose worst deviation is smallest ({best}) is "
-            f"off by a factor of {math.exp(spread[best]):.2g}; the one with most maxima within 10 % ({most}) has "
+            f"**Not reproduced.** No single reading gives all printed maxima: the reading whose worst deviation is smallest "
+            f"({best}) is off by a factor of {math.exp(spread[best]):.2g}; the reading with most maxima within 10 % ({most}) has "
             f"{within[most]} of {len(theirs)}.", "",
             "For L at 0.1 mm the text gives no value in x, and 0.0154 in y, which is the value of R in x. The values at 0.3 and 0.5 mm "
             "(0.0526, 0.0878) are three and five times 0.0175, so both values at 0.1 mm are left out here.", ""]
@@ -142,7 +143,7 @@ def larger(folder):
         lines.append([size, source, axis, f"{value:g}", *(f"{number:.4f}" for number in found),
                       "-" if first is None else f"{value / first:.3f}", f"{growth:.4f}", verdict])
     return ["## Figures 8-11: errors of 0.3 and 0.5 mm", "",
-            "In mm, and in proportion to the maxima at 0.1 mm (ours: limb 1).", "",
+            "The table has the errors in mm, and their ratios to the maxima at 0.1 mm (ours: with errors of limb 1).", "",
             *markdown(["size, mm", "source", "axis", "printed", *SHOWN, "printed / at 0.1", "ours / at 0.1", "growth"], lines),
             "Printed and computed errors grow in proportion to the size, with two exceptions among the printed ones: R in z at 0.3 mm, "
             "0.084, is three times 0.0280, not 0.0268, so 0.0804 was probably meant; and L in z is printed as 0.0003, 0.00032 and "
@@ -190,7 +191,8 @@ def second_trajectory(folder):
         lines.append(line)
     header = [f"{name} {axis}" for name in ("all limbs", "limb 1", "root sum square") for axis in AXES]
     return ["## Figures 12-15: the second trajectory", "",
-            "Largest errors of the tool tip in mm, in brackets those on the first. The paper prints no numbers here.", "",
+            "The table has the largest errors of the tool tip on the second trajectory in mm, and in brackets those on the first "
+            "trajectory. The paper prints no numbers for the second trajectory.", "",
             *markdown(["source", *header], lines)]
 
 
@@ -213,8 +215,8 @@ def interaction(folder):
     header = [f"{name}, {what}" for name in ("all limbs", "limb 1")
               for what in ("exact, 0.1 mm", "exact, 0.5 mm", "first order, 0.5 mm")]
     return ["## Figures 16-18: coupled minus sum", "",
-            "Largest |coupled - sum of the single effects| of the tool tip in mm, compared with the largest coupled effect. First order "
-            "is a sum by construction. **Coupling is superposition**, to two thousandths of the effects at 0.1 mm; the rest grows "
+            "The table has the largest difference between the coupled effect and the sum of the single effects at the tool tip in mm, "
+            "compared with the largest coupled effect. To first order a coupled effect is a sum by construction. **Coupling is superposition**, to two thousandths of the effects at 0.1 mm; the rest grows "
             "with the square of the size. The offsetting described in the paper is the addition of effects with opposite signs.", "",
             *markdown(["coupled", *header], lines)]
 
@@ -236,8 +238,9 @@ def cancelling(folder):
                     lines.append([name, subset, axis, f"{100 * opposite:.0f} %", f"{100 * own[most]:.0f} %",
                                   f"{curves.time[most]:.2f} s"])
     return ["## Which sources cancel, and where", "",
-            "Pairs on the first trajectory, errors of 0.1 mm: on which share of the trajectory they are opposed, the largest share "
-            "of their single effects that is lost in the sum (100 %: they cancel), and the time at which that happens.", "",
+            "The table has pairs of sources on the first trajectory, with errors of 0.1 mm: on which share of the trajectory the effects "
+            "of both are opposed, the largest share of the single effects that is lost in their sum (100 %: they cancel), and the time "
+            "at which most is lost.", "",
             *markdown(["reading", "pair", "axis", "opposed", "largest cancellation", "at"], lines)]
 
 
@@ -259,14 +262,14 @@ def separation(folder):
     drive = by_kind(lines, lambda row: float(row["drive_share"]))
     removable = by_kind(lines, lambda row: float(row["removable"]))
     return ["## Section 4.2: what calibration can remove", "",
-            "Over 100 poses of the workspace, means of the three limbs. Drive share: the part of an error's effect that enters "
-            "through the drives' equations rather than the constraints'. Removable: the part that the drives can remove at each "
-            "pose separately. The paper has 24 compensable errors, with c as one number for each limb, and 21 others.", "",
+            "The table has means over 100 poses of the workspace and the three limbs. Drive share: the share of an error's effect that "
+            "enters through the equations of the drives, not through those of the constraints. Removable: the share of the effect that "
+            "the drives can remove at each pose separately. The paper has 24 compensable errors, with c as one number for each limb, and 21 others.", "",
             *markdown(["error", "the paper", "drive share", "removable"],
                       [[kind, paper[kind], f"{100 * drive[kind]:.1f} %", f"{100 * removable[kind]:.1f} %"]
                        for kind in sorted(drive, key=lambda kind: -removable[kind])]),
-            "The two classes are as printed, except for c, the position of the spherical joint on the platform: it enters both "
-            "kinds of equations, and calibration leaves part of its effect.", ""]
+            "The classes of compensable and other errors are as printed, except for c, the position of the spherical joint on the "
+            "platform: c enters both kinds of equations, and calibration leaves part of its effect.", ""]
 
 
 def mean_squares(folder, study, response):
@@ -288,8 +291,8 @@ def sensitivity(folder):
     verdicts = rows(folder / "sensitivity" / "fidelity.csv")
     linear_count = sum(int(float(row["linear"])) for row in verdicts)
     return ["## Sensitivity of the head over its workspace", "",
-            "51 errors, 100 poses, 1000 draws each; normal errors of 0.1 mm and 0.01 deg; exact solves and first order on the "
-            "same draws. The table shows how far an error of that size moves the tool tip, root mean square "
+            "The study has 51 normal errors of 0.1 mm and 0.01 deg, 100 poses and 1000 draws of each error at each pose; exact solves "
+            "and solves to first order use the same draws. The table shows how far an error moves the tool tip, root mean square "
             "over draws, poses and limbs:", "",
             *markdown(["error", "tip, um"], [[kind, f"{effect[kind]:.1f}"]
                                              for kind in sorted(effect, key=lambda kind: -effect[kind])]),
@@ -306,9 +309,9 @@ def machine(folder):
     lines = [[part, *(f"{scale * math.sqrt(squares[part][response]):.3g}" for response, scale in scales.items())]
              for part in squares]
     return ["## The 5-DOF machine: slides against head", "",
-            "Root mean squares of the effects of all errors of the head and of all errors of the slides (sums of the mean squares of "
-            "single errors), normal errors of 0.1 mm and 0.01 deg. The paper calls the slides secondary; with errors of equal size "
-            "they are not.", "",
+            "The table has the root mean square effects of all errors of the head and of all errors of the slides (from sums of the mean "
+            "squares of single errors), with normal errors of 0.1 mm and 0.01 deg. The paper calls the slides secondary; with errors of "
+            "equal size they are not.", "",
             *markdown(["errors of", "rotation, arcsec", "position, um", "tip, um"], lines)]
 
 
