@@ -216,8 +216,9 @@ def interaction(folder):
               for what in ("exact, 0.1 mm", "exact, 0.5 mm", "first order, 0.5 mm")]
     return ["## Figures 16-18: coupled minus sum", "",
             "The table has the largest difference between the coupled effect and the sum of the single effects at the tool tip in mm, "
-            "compared with the largest coupled effect. To first order a coupled effect is a sum by construction. **Coupling is superposition**, to two thousandths of the effects at 0.1 mm; the rest grows "
-            "with the square of the size. The offsetting described in the paper is the addition of effects with opposite signs.", "",
+            "compared with the largest coupled effect. To first order a coupled effect is a sum by construction. **Coupling is "
+            "superposition**, to two thousandths of the effects at 0.1 mm; the rest grows with the square of the size. The "
+            "offsetting described in the paper is the addition of effects with opposite signs.", "",
             *markdown(["coupled", *header], lines)]
 
 
@@ -264,7 +265,8 @@ def separation(folder):
     return ["## Section 4.2: what calibration can remove", "",
             "The table has means over 100 poses of the workspace and the three limbs. Drive share: the share of an error's effect that "
             "enters through the equations of the drives, not through those of the constraints. Removable: the share of the effect that "
-            "the drives can remove at each pose separately. The paper has 24 compensable errors, with c as one number for each limb, and 21 others.", "",
+            "the drives can remove at each pose separately. The paper has 24 compensable errors, with c as one number for each limb, "
+            "and 21 others.", "",
             *markdown(["error", "the paper", "drive share", "removable"],
                       [[kind, paper[kind], f"{100 * drive[kind]:.1f} %", f"{100 * removable[kind]:.1f} %"]
                        for kind in sorted(drive, key=lambda kind: -removable[kind])]),
