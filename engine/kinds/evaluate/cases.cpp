@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <utility>
 
@@ -72,28 +71,33 @@ Evaluation evaluation_of_cases(EvaluationResult solves, std::span<const ErrorCas
                                NotConverged policy) {
   Evaluation found = evaluation(std::move(solves), case_table(cases), kPairing, model);
   found.cases = texts(cases, &ErrorCase::name);
+  summarize_cases(found, policy);
+  return found;
+}
+
+void summarize_cases(Evaluation& found, NotConverged policy) {
   const EvaluationResult& all = found.solves;
-  found.mean = decltype(found.mean)({all.responses(), cases.size()}, kNaN);
-  found.max = found.mean;
+  found.mean = decltype(found.mean)({all.responses(), found.cases.size()}, kNaN);
+  found.extreme = found.mean;
   found.count = decltype(found.count)(found.mean.lengths());
   for (std::size_t r = 0; r < all.responses(); ++r) {
-    for (std::size_t c = 0; c < cases.size(); ++c) {
+    for (std::size_t c = 0; c < found.cases.size(); ++c) {
       std::uint64_t count = 0;
       double sum = 0.0;
-      double largest = -std::numeric_limits<double>::infinity();
+      double extreme = 0.0;
       for (std::size_t m = 0; m < all.poses(); ++m) {
         if (!counts(all.status(m, c), policy)) continue;
-        sum += all.response(r, m, c);
-        largest = std::max(largest, all.response(r, m, c));
+        const double value = all.response(r, m, c);
+        sum += value;
+        if (std::abs(value) > std::abs(extreme)) extreme = value;
         ++count;
       }
       found.count(r, c) = count;
       if (count == 0) continue;
       found.mean(r, c) = sum / static_cast<double>(count);
-      found.max(r, c) = largest;
+      found.extreme(r, c) = extreme;
     }
   }
-  return found;
 }
 
 std::vector<RowOutcome> row_outcomes(const Evaluation& found, std::size_t response) {

@@ -52,7 +52,8 @@ struct Evaluation {
   std::vector<std::string> cases;                        ///< names of the cases; empty if the errors are rows of a
                                                          ///< table
   OverPoses<double> mean;  ///< mean of a response over the poses whose solves count; NaN if there are none
-  OverPoses<double> max;   ///< largest value of a response over the poses whose solves count; NaN if there are none
+  /// Value of a response with the largest magnitude over the poses whose solves count; NaN if there are none.
+  OverPoses<double> extreme;
   OverPoses<std::uint64_t> count;  ///< number of poses whose solves count
 };
 
@@ -67,6 +68,9 @@ Evaluation evaluation(EvaluationResult solves, const ErrorTable& errors, Pairing
 /// solves count (see counts()).
 Evaluation evaluation_of_cases(EvaluationResult solves, std::span<const ErrorCase> cases, const ModelDescription& model,
                                NotConverged policy);
+
+/// Sets mean, extreme and count of each case from its solves.
+void summarize_cases(Evaluation& found, NotConverged policy);
 
 /// The evaluation in a stored result. Precondition: the result is of kind `evaluate`.
 inline const Evaluation& evaluation_of(const StoredResult& result) { return found_of<Evaluation>(result); }

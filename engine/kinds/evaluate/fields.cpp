@@ -27,7 +27,8 @@ const Fields<EvaluationResult> kJointFields{{"joint_displacements", &EvaluationR
 
 const Fields<Evaluation> kCaseFields{
     {"mean", &Evaluation::mean, kResponseUnit, "Mean over the poses that count; NaN where there is none"},
-    {"max", &Evaluation::max, kResponseUnit, "Largest value over the poses that count"},
+    {"extreme", &Evaluation::extreme, kResponseUnit, "Value of the largest magnitude over the poses that count",
+     Presence::where_computed},
     {"count", &Evaluation::count, "1", "Poses that count: solved, or as not_converged has it"}};
 
 /// The order of solves in a file: pose by pose for a table of errors, case by case for named cases.
@@ -385,6 +386,16 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
   write_table(result, study, std::any_cast<const TableOfErrors&>(any));
 }
 
+/// Reads mean, extreme and count of each case. Files of version 0.2 have no extremes (their `max` is the largest value
+/// with its sign), so all three are computed again from the solves that count in the file.
+void read_case_fields(const h5::File& file, Evaluation& found) {
+  read_fields(file, "/evaluate", kCaseFields, found);
+  if (!found.extreme.empty()) return;
+  const auto count = found.count;
+  summarize_cases(found, NotConverged::exclude);
+  if (found.count != count) summarize_cases(found, NotConverged::include);
+}
+
 void read(const h5::File& file, StoredResult& result) {
   Evaluation found;
   found.details = read_details(file);
@@ -392,8 +403,8 @@ void read(const h5::File& file, StoredResult& result) {
   const bool has_cases = file.exists("/case");
   if (has_cases) {
     found.cases = file.read<std::string>("/case");
-    read_fields(file, "/evaluate", kCaseFields, found);
     read_solves(file, result.responses, CaseLayout(lengths_in<CaseLayout>(file)), found);
+    read_case_fields(file, found);
   } else {
     read_solves(file, result.responses, TableLayout(lengths_in<TableLayout>(file)), found);
   }

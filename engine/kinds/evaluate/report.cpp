@@ -101,7 +101,7 @@ Table parts_table(const StoredResult& result) {
 Table cases_table(const StoredResult& result) {
   const Evaluation& found = evaluation_of(result);
   Table table{.name = "cases",
-              .caption = "Each case over its poses: mean and largest value of the responses",
+              .caption = "Each case over its poses: mean, and the value of the largest magnitude",
               .columns = {},
               .notes = {"poses: those whose solve counts"}};
   std::vector<FilledColumn> columns{
@@ -115,9 +115,9 @@ Table cases_table(const StoredResult& result) {
     const std::string_view unit = display(response).name;
     columns.push_back({number_column(response.name + "_mean", response.name + " mean", unit, dispensable),
                        [&, r](std::size_t c) { return value_cell(found.mean(r, c), response, kDigits); }});
-    columns.push_back(
-        {number_column(response.name + "_max", response.name + " max", unit, dispensable == 0 ? 0 : dispensable + 1),
-         [&, r](std::size_t c) { return value_cell(found.max(r, c), response, kDigits); }});
+    columns.push_back({number_column(response.name + "_extreme", response.name + " extreme", unit,
+                                     dispensable == 0 ? 0 : dispensable + 1),
+                       [&, r](std::size_t c) { return value_cell(found.extreme(r, c), response, kDigits); }});
     dispensable += 2;
   }
   fill(table, positions(found.cases.size()), columns);
@@ -292,11 +292,12 @@ Answer answer(const StoredResult& result) {
   Answer lines;
   if (std::string limits = limits_text(result); !limits.empty()) lines.emplace_back("Limits", std::move(limits));
   if (cases > 0) {
-    const auto largest = found.max.row(r);
-    const auto worst = static_cast<std::size_t>(std::ranges::max_element(largest) - largest.begin());
+    const auto extreme = found.extreme.row(r);
+    const auto worst = static_cast<std::size_t>(
+        std::ranges::max_element(extreme, {}, [](double value) { return std::abs(value); }) - extreme.begin());
     lines.emplace_back(
         "Answer", fmt::format("Of {}, {} does most: {} of up to {}, on average {}.", counted(cases, "case", "cases"),
-                              found.cases[worst], response.name, response_text(response, largest[worst]),
+                              found.cases[worst], response.name, response_text(response, extreme[worst]),
                               response_text(response, found.mean(r, worst))));
   } else {
     lines.emplace_back("Answer", fmt::format("{} is {} on average, between {} and {}.", response.name,
@@ -345,8 +346,8 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
   Comparable all = comparable_by_response(result, "case", found.cases);
   add_quantity(all, result, "mean over the poses", "case_mean",
                [&](std::size_t r, std::size_t c) { return found.mean(r, c); });
-  add_quantity(all, result, "largest over the poses", "case_max",
-               [&](std::size_t r, std::size_t c) { return found.max(r, c); });
+  add_quantity(all, result, "largest magnitude over the poses, with its sign", "case_extreme",
+               [&](std::size_t r, std::size_t c) { return found.extreme(r, c); });
   return all;
 }
 

@@ -48,7 +48,7 @@ TEST_F(CasesFile, IsReadBackAsItWas) {
   EXPECT_EQ(found.solves.iterations, result_.solves.iterations);
   EXPECT_EQ(found.solves.joint_displacement, result_.solves.joint_displacement);
   EXPECT_EQ(found.mean, result_.mean);
-  EXPECT_EQ(found.max, result_.max);
+  EXPECT_EQ(found.extreme, result_.extreme);
   EXPECT_EQ(found.count, result_.count);
   EXPECT_EQ(test::elements(found.errors), (std::vector<double>{1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3}));
   EXPECT_TRUE(verify_result(path_).matches());
@@ -86,8 +86,21 @@ TEST_F(CasesFile, IsExportedWithItsNames) {
   EXPECT_LT(solves.find("\nfine,3,"), solves.find("\ncoarse,0,"));
   const std::string cases = test::read_bytes(tables + "/cases.csv");
   EXPECT_EQ(cases.substr(0, cases.find('\n')),
-            "case,poses,angular_deformation_mean [rad],angular_deformation_max [rad],linear_deformation_mean [m],"
-            "linear_deformation_max [m]");
+            "case,poses,angular_deformation_mean [rad],angular_deformation_extreme [rad],linear_deformation_mean [m],"
+            "linear_deformation_extreme [m]");
+}
+
+/// Files of version 0.2.0 have no extremes.
+TEST_F(CasesFile, OfVersion020GetsItsExtremesFromTheSolves) {
+  Evaluation older = result_;
+  older.extreme = {};
+  const std::string path = folder_.file("older.h5");
+  write_result(path, example_.study, example_.poses, older, example_.facts);
+  ASSERT_FALSE(h5::File::open(path).exists("/evaluate/extreme"));
+  const StoredResult stored = read_result(path);
+  EXPECT_EQ(evaluation_of(stored).extreme, result_.extreme);
+  EXPECT_EQ(evaluation_of(stored).mean, result_.mean);
+  EXPECT_EQ(evaluation_of(stored).count, result_.count);
 }
 
 class IdentificationFile : public testing::Test {

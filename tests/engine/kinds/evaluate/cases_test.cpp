@@ -36,11 +36,17 @@ TEST(CaseTable, HasARowForEachCase) {
   EXPECT_EQ(table.values, (std::vector<double>{1.0, 2.0, 3.0, 4.0}));
 }
 
-TEST(Evaluation, TakesMeanAndMaximumOverThePoses) {
+TEST(Evaluation, TakesMeanAndExtremeOverThePoses) {
   const Evaluation result = of_cases(evaluation(), NotConverged::exclude);
   EXPECT_EQ(elements(result.mean), (std::vector<double>{3.0, 40.0}));
-  EXPECT_EQ(elements(result.max), (std::vector<double>{6.0, 90.0}));
+  EXPECT_EQ(elements(result.extreme), (std::vector<double>{6.0, 90.0}));
   EXPECT_EQ(elements(result.count), (std::vector<std::uint64_t>{3, 3}));
+}
+
+TEST(Evaluation, TheExtremeHasTheLargestMagnitudeAndItsSign) {
+  EvaluationResult some = evaluation();
+  some.response = {{1, 3, 2}, {-0.2345, 3.0, 0.1, -2.0, -0.2135, -4.0}};
+  EXPECT_EQ(elements(of_cases(some, NotConverged::exclude).extreme), (std::vector<double>{-0.2345, -4.0}));
 }
 
 TEST(Evaluation, LeavesOutWhatDoesNotCount) {
