@@ -25,6 +25,7 @@
 #include "engine/result/result_file.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/outlook.h"
+#include "engine/run/rows_within.h"
 #include "engine/run/run_options.h"
 #include "engine/storage/checkpoint.h"
 #include "engine/study/bare_numbers.h"
@@ -155,10 +156,13 @@ int solve(const EvaluateOptions& options, const Evaluated& all, const std::strin
   const double seconds = seconds_since(start);
   if (!result) return interrupted();
   const SolveCounts total = result->total();
+  std::vector<std::uint8_t> within;
   if (const auto& limits = study.analysis.limits; !limits.empty()) {
     result->verdicts = judge_rows(limits, *result, pairing, study.not_converged);
+    within = rows_within(limits, *result, pairing, study.not_converged);
   }
   Evaluation found = evaluation(*std::move(result), errors, pairing, model.description());
+  found.within_limits = std::move(within);
   StoredResult shown = described(study, model, poses);
   shown.verdicts = found.solves.verdicts;
   shown.row_names = row_names(errors.labels, pairing, errors.rows);
@@ -242,7 +246,7 @@ Command& add_evaluate(Command& program) {
   CLI::Option* errors = command.add_value(
       "--errors", options.errors, "E.csv",
       "errors, a row is a sample; the first line names the factors, with units or SI; a column \"part\" "
-      "names the rows, other columns of text are passed over");
+      "(or name, serial, id, sn, number) names the rows, other columns of text are passed over");
   errors->required();
   command
       .add_value(

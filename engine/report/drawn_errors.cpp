@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/base/units.h"
+#include "engine/random/distribution.h"
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
 #include "engine/schema/settings.h"
@@ -63,6 +64,17 @@ std::vector<std::string> sizes_of_distributions(const StoredResult& result) {
 std::vector<std::string> drawn_sizes(const StoredResult& result, const StudyWords& words) {
   if (!words.drawn.empty()) return words.drawn;
   return sizes_by_dimension(result) ? sizes_of_dimensions(result) : sizes_of_distributions(result);
+}
+
+std::string given_errors_text(const StoredResult& result) {
+  const std::size_t all = result.factor_distribution.size();
+  const auto given =
+      static_cast<std::size_t>(std::ranges::count(result.factor_distribution, name(Distribution::Shape::given)));
+  if (given == 0) return {};
+  return fmt::format(
+      "{} of {} given by errors.machines, {} drawn; poesy evaluate STUDY.toml --errors FILE.csv judges "
+      "each given machine",
+      given, counted(all, "error", "errors"), all - given);
 }
 
 std::string seed_text(const StoredResult& result, const StudyWords& words) {

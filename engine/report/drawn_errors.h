@@ -14,6 +14,9 @@ namespace poesy {
 /// StudyWords::drawn. words: the texts of the result's kind.
 std::vector<std::string> drawn_sizes(const StoredResult& result, const StudyWords& words);
 
+/// How many errors the table of given machines states, and how many are drawn; empty if there is no such table.
+std::string given_errors_text(const StoredResult& result);
+
 /// The seed of the samples that the result shows; empty if no errors are drawn.
 std::string seed_text(const StoredResult& result, const StudyWords& words);
 

@@ -11,6 +11,7 @@
 #include "engine/model/leading_response.h"
 #include "engine/report/display.h"
 #include "engine/report/drawing_table.h"
+#include "engine/report/drawn_errors.h"
 #include "engine/report/report_kind.h"
 #include "engine/stats/proportion.h"
 #include "engine/study/limit_keys.h"
@@ -307,6 +308,7 @@ Table yield_table(const StoredResult& result, const LimitVerdicts& verdicts) {
   if (yield.unsolved > 0) table.notes.push_back(unsolved_note(yield));
   if (yield.with_parts) table.notes.push_back(with_parts_text(yield));
   if (!result.measured.names.empty()) table.notes.push_back(few_parts_text(result, yield.conf_level, yield.asked));
+  if (std::string given = given_errors_text(result); !given.empty()) table.notes.push_back(std::move(given));
   return table;
 }
 
@@ -405,11 +407,12 @@ std::optional<Table> limits_table(const StoredResult& result) {
                           end_cell(one.limit.to(), result.responses[one.response]),
                           percent_cell(share_of(one.within, one.tried)), text_cell(place(result, one))});
   }
-  if (verdicts->rows_within && verdicts->limits.size() > 1) {
+  if (verdicts->rows_within && !verdicts->limits.empty()) {
     const std::uint64_t rows = verdicts->limits.front().tried;
-    table.notes.push_back(fmt::format("{} of {} are within all limits ({})", count_text(*verdicts->rows_within),
-                                      counted(rows, "row", "rows"),
-                                      percent_text(share_of(*verdicts->rows_within, rows))));
+    const bool several = verdicts->limits.size() > 1;
+    const std::string share = several ? fmt::format(" ({})", percent_text(share_of(*verdicts->rows_within, rows))) : "";
+    table.notes.push_back(fmt::format("{} of {} are within {}{}", count_text(*verdicts->rows_within),
+                                      counted(rows, "row", "rows"), several ? "all limits" : "the limit", share));
   }
   add_limit_words(result, verdicts->limits, table);
   const std::size_t all = verdicts->limits.size();

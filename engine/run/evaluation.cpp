@@ -8,6 +8,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
+#include "engine/run/rows_within.h"
 #include "engine/run/unit_fold.h"
 
 namespace poesy {
@@ -142,6 +143,10 @@ struct TableJob {
   }
 };
 
+std::size_t number_of_rows(const EvaluationResult& found, Pairing pairing) {
+  return pairing == Pairing::row_by_row ? found.poses() : found.samples();
+}
+
 /// How one row of errors (a machine) compares with one limit.
 struct JudgedRow {
   bool within = false;
@@ -188,18 +193,27 @@ std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverO
   return result;
 }
 
+std::vector<std::uint8_t> rows_within(std::span<const ResponseLimit> limits, const EvaluationResult& found,
+                                      Pairing pairing, NotConverged policy) {
+  std::vector<std::uint8_t> within(number_of_rows(found, pairing), 1);
+  for (const ResponseLimit& limit : limits) {
+    for (std::size_t row = 0; row < within.size(); ++row) {
+      if (!judge_row(limit, found, pairing, policy, row).within) within[row] = 0;
+    }
+  }
+  return within;
+}
+
 LimitVerdicts judge_rows(std::span<const ResponseLimit> limits, const EvaluationResult& found, Pairing pairing,
                          NotConverged policy) {
-  const std::size_t rows = pairing == Pairing::row_by_row ? found.poses() : found.samples();
+  const std::size_t rows = number_of_rows(found, pairing);
   LimitVerdicts verdicts;
-  std::vector<std::uint8_t> good(rows, 1);
   for (const ResponseLimit& limit : limits) {
     LimitVerdict verdict{.response = limit.response, .limit = limit.allowed, .value = kNaN, .tried = rows};
     double worst = -std::numeric_limits<double>::infinity();
     for (std::size_t row = 0; row < rows; ++row) {
       const JudgedRow judged = judge_row(limit, found, pairing, policy, row);
       if (judged.within) ++verdict.within;
-      if (!judged.within) good[row] = 0;
       if (std::isnan(judged.value) || limit.allowed.badness(judged.value) <= worst) continue;
       worst = limit.allowed.badness(judged.value);
       verdict.value = judged.value;
@@ -209,7 +223,7 @@ LimitVerdicts judge_rows(std::span<const ResponseLimit> limits, const Evaluation
     verdict.passed = verdict.within == verdict.tried;
     verdicts.limits.push_back(verdict);
   }
-  verdicts.rows_within = static_cast<std::uint64_t>(std::ranges::count(good, 1));
+  verdicts.rows_within = static_cast<std::uint64_t>(std::ranges::count(rows_within(limits, found, pairing, policy), 1));
   return verdicts;
 }
 

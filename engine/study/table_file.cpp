@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -99,6 +100,19 @@ std::vector<TableColumn> read_header(CsvLines& lines, const KnownColumns& known)
     columns.push_back(column);
   }
   return columns;
+}
+
+/// Takes a column of text with a title that people give labels as the column "part", unless another one names the rows.
+void take_likely_labels(std::vector<TableColumn>& columns) {
+  constexpr std::array<std::string_view, 5> kTitles{"serial", "serial_number", "sn", "id", "number"};
+  if (std::ranges::find(columns, TableColumn::Role::label, &TableColumn::role) != columns.end()) return;
+  const auto likely = std::ranges::find_if(columns, [&](const TableColumn& column) {
+    return column.role == TableColumn::Role::text &&
+           std::ranges::find(kTitles, lower_case(column.name)) != kTitles.end();
+  });
+  if (likely == columns.end()) return;
+  likely->role = TableColumn::Role::label;
+  likely->name = "part";
 }
 
 /// The names of the columns of numbers.
@@ -350,7 +364,8 @@ ErrorTable read_errors(const std::string& path, const Model& model) {
                      .what = "factor"};
   for (const Factor& factor : description.factors)
     known.numbers.push_back({factor.name, factor.dimension, factor.name});
-  const std::vector<TableColumn> columns = read_header(lines, known);
+  std::vector<TableColumn> columns = read_header(lines, known);
+  take_likely_labels(columns);
   ErrorTable table;
   for (const std::string_view name : names_of_numbers(columns)) table.factors.push_back(*description.find_factor(name));
   if (table.factors.empty()) {

@@ -45,9 +45,9 @@ class Limits(ProgramTest):
         with h5py.File(self.folder / f"{name}.h5") as file:
             return file["limits/value"][0] * 1e3
 
-    def table(self, name="study"):
+    def table(self, name="study", which="limits"):
         tables = json.loads(self.succeeds("show", f"{name}.h5", "--json"))["tables"]
-        return next(table for table in tables if table["name"] == "limits")
+        return next(table for table in tables if table["name"] == which)
 
     def check_both_sides(self, judge):
         """A limit at the value that is found is kept, and one just below is not."""
@@ -165,6 +165,26 @@ class Limits(ProgramTest):
         row, = self.table("rows")["rows"]
         self.assertAlmostEqual(row["within"], 100.0 / 3.0)
         self.assertTrue(row["place"].startswith("sample 2, pose "))
+        self.assertIn(b"1 of 3 rows are within the limit", done.stdout)
+
+    def test_parts_are_judged_one_by_one(self):
+        """Each part passes or fails by itself, whatever the title of the column with its name is."""
+        self.write("cases.toml", 'format = "poesy-study"\nversion = 1\n' + CASES % "1e-3")
+        self.write("poses.csv", "z,beta,gamma\n-0.22,0.1,0.2\n-0.21,-0.1,0.1\n")
+        for title, names in (("part", ("SN1", "SN2", "SN3")), ("Serial", ("17", "18", "0019"))):
+            self.write("errors.csv", f"{title},delta_1_1_y\n{names[0]},0.0001\n{names[1]},0\n{names[2]},0.0002\n")
+            done = self.poesy("evaluate", "cases.toml", "--poses", "poses.csv", "--errors", "errors.csv", "-o", "rows.h5", "--quiet")
+            self.assertEqual(done.returncode, 6, done.stderr)
+            self.assertIn(f"fail: {names[0]}, {names[2]}\n", done.stdout.decode())
+            self.assertIn("1 of 3 rows are within the limit", self.succeeds("show", "rows.h5"))
+            parts = self.table("rows", "parts")["rows"]
+            self.assertEqual([(row["label"], row["kept"]) for row in parts], list(zip(names, ("FAIL", "PASS", "FAIL"))))
+            self.succeeds("export", "rows.h5", "-d", "tables")
+            lines = (self.folder / "tables" / "parts.csv").read_text().splitlines()
+            self.assertTrue(lines[0].startswith("part,poses,kept,"), lines[0])
+            self.assertEqual([line.split(",")[:3] for line in lines[1:]], [[name, "2", kept] for name, kept in zip(names, "010")])
+            self.succeeds("report", "rows.h5", "-o", "rows.html")
+            self.assertIn(f"fail: {names[0]}, {names[2]}", (self.folder / "rows.html").read_text())
 
 
 if __name__ == "__main__":

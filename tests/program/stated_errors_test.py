@@ -184,6 +184,8 @@ strut_3 = { distribution = "triangular", half_width = "5 um", mean = "-2 um" }
             self.assertEqual(file["yield/machines"][()], 2400)
             self.assertEqual(list(file["factors/distribution"].asstr())[:3], ["given", "given", "uniform"])
             self.assertTrue(numpy.isnan(file["yield/gradient"][:2]).all())
+        self.assertIn("2 of 6 errors given by errors.machines, 4 drawn; poesy evaluate STUDY.toml --errors FILE.csv judges each",
+                      " ".join(self.succeeds("show", "out.h5").split()))
         generator = numpy.random.default_rng(5)
         good = []
         for _ in range(50):

@@ -12,6 +12,7 @@
 #include "engine/result/result_parts.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/result.h"
+#include "engine/run/rows_within.h"
 
 namespace poesy {
 namespace {
@@ -23,12 +24,16 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   const std::shared_ptr<const Model> model = studied_model(run.study, run.model, run.poses);
   auto solves = run_evaluation(*model, run.study.solver, run.poses, case_table(cases), kPairing, run.options);
   if (!solves || !run.makes_result()) return std::nullopt;
+  std::vector<std::uint8_t> within;
   if (const auto& limits = run.study.analysis.limits; !limits.empty()) {
     solves->verdicts = judge_rows(limits, *solves, kPairing, run.study.not_converged);
+    within = rows_within(limits, *solves, kPairing, run.study.not_converged);
   }
   StudyResult found{{}, solves->verdicts, {}};
   found.row_names = texts(cases, &ErrorCase::name);
-  found.found = evaluation_of_cases(*std::move(solves), cases, run.model.description(), run.study.not_converged);
+  Evaluation judged = evaluation_of_cases(*std::move(solves), cases, run.model.description(), run.study.not_converged);
+  judged.within_limits = std::move(within);
+  found.found = std::move(judged);
   return found;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -49,9 +50,11 @@ struct Evaluation {
   Pairing pairing = Pairing::every_pose_with_every_row;  ///< how poses and rows of errors are paired
   Array<double, axis::Row, axis::Factor> errors;         ///< [rows x all errors] errors that were given, SI
   RowLabels labels;                                      ///< labels of the rows; empty if the rows have none
-  std::vector<std::string> cases;                        ///< names of the cases; empty if the errors are rows of a
-                                                         ///< table
-  OverPoses<double> mean;  ///< mean of a response over the poses whose solves count; NaN if there are none
+  /// [rows] 1: the row is within all limits; 0: it is not. Empty if the study states no limits.
+  std::vector<std::uint8_t> within_limits;
+  std::vector<std::string> cases;  ///< names of the cases; empty if the errors are rows of a
+                                   ///< table
+  OverPoses<double> mean;          ///< mean of a response over the poses whose solves count; NaN if there are none
   /// Value of a response with the largest magnitude over the poses whose solves count; NaN if there are none.
   OverPoses<double> extreme;
   OverPoses<std::uint64_t> count;  ///< number of poses whose solves count

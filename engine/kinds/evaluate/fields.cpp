@@ -15,6 +15,7 @@ namespace poesy {
 namespace {
 
 constexpr const char* kLabels = "/evaluate/label";
+constexpr const char* kWithinLimits = "/evaluate/within_limits";
 
 /// The words for Pairing in a result file: how poses and rows of errors are paired.
 /// @{
@@ -192,7 +193,15 @@ void add_errors(ResultBuilder& result, const Evaluation& found, const std::strin
   result.file().set_attribute(kLabels, "column", found.labels.column);
 }
 
-/// Throws h5::Error unless every verdict was reached over all rows of errors.
+/// Writes whether each row of errors is within all limits; nothing if the study states none. rows: the name of the axis
+/// of rows.
+void add_within_limits(ResultBuilder& result, const Evaluation& found, const std::string& rows) {
+  if (found.within_limits.empty()) return;
+  result.add(kWithinLimits, {rows}, found.within_limits,
+             {"1", "1: the row of errors is within all limits at all of its poses; 0: it is not"});
+}
+
+/// Throws h5::Error unless every verdict counts all rows of errors.
 void check_rows(const std::vector<LimitVerdict>& limits, std::size_t rows) {
   const bool fits = std::ranges::all_of(limits, [rows](const LimitVerdict& one) { return one.tried == rows; });
   if (!fits) throw h5::Error("/limits/tried is not the number of rows of errors");
@@ -322,6 +331,12 @@ CsvTable error_table(const StoredResult& result) {
   return table;
 }
 
+/// Gives a table with a line for each row of errors the column "kept", if the study states limits.
+void append_kept(CsvTable& table, const Evaluation& found) {
+  if (found.within_limits.empty()) return;
+  table.columns.push_back({"kept", [&found](std::size_t row) { return to_number(found.within_limits[row]); }});
+}
+
 /// A table with a line for each row of errors. Precondition: the rows have labels.
 CsvTable part_table(const StoredResult& result) {
   const RowLabels& labels = evaluation_of(result).labels;
@@ -334,6 +349,7 @@ CsvTable part_table(const StoredResult& result) {
     const NamedUnit& response = result.responses[r];
     const std::vector<RowOutcome> outcomes = row_outcomes(evaluation_of(result), r);
     if (r == 0) append("poses", outcomes, &RowOutcome::solved);
+    if (r == 0) append_kept(table, evaluation_of(result));
     append(with_unit(response.name + "_mean", response.unit), outcomes, &RowOutcome::mean);
     append(with_unit(response.name + "_extreme", response.unit), outcomes, &RowOutcome::extreme);
     append(response.name + "_extreme_pose", outcomes, &RowOutcome::pose);
@@ -345,6 +361,7 @@ CsvTable case_sum_table(const StoredResult& result) {
   const Evaluation& found = evaluation_of(result);
   CsvTable table{"cases", {"case", [&](std::size_t c) { return found.cases[c]; }}, found.cases.size()};
   table.columns.push_back(list_column("poses", found.count));
+  append_kept(table, found);
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
     const NamedUnit& response = result.responses[r];
     for (const FieldRow<Evaluation>& field : kCaseFields) {
@@ -367,7 +384,9 @@ void write_table(ResultBuilder& result, const Study& study, const TableOfErrors&
   add_names(result, study, table.factors);
   result.add_axis("sample", axis_numbers(found.solves.samples()), {"1", "Number of the sample at each pose, from 0"});
   add_solves(result, study.model(), found, TableLayout(found.solves.status.lengths()));
-  add_errors(result, found, found.pairing == Pairing::row_by_row ? "pose" : "sample");
+  const std::string rows = found.pairing == Pairing::row_by_row ? "pose" : "sample";
+  add_errors(result, found, rows);
+  add_within_limits(result, found, rows);
   add_limits(result, study.model(), found.solves.verdicts);
 }
 
@@ -376,6 +395,7 @@ void write_cases(ResultBuilder& result, const Study& study, const Evaluation& fo
   result.add_axis("case", found.cases, {"1", "Name of the case"});
   add_solves(result, study.model(), found, CaseLayout({found.cases.size(), found.solves.poses()}));
   add_errors(result, found, "case");
+  add_within_limits(result, found, "case");
   add_limits(result, study.model(), found.solves.verdicts);
   result.show_axes("/evaluate", {"response"});
   write_fields(result, "/evaluate", kCaseFields, found);
@@ -416,6 +436,11 @@ void read(const h5::File& file, StoredResult& result) {
   found.errors = decltype(found.errors)({axis_length(file, rows), axis_length(file, "factor")},
                                         read_along<double>(file, "/errors/values", {rows, "factor"}));
   found.labels = read_labels(file, rows);
+  // Files of version 0.2 do not say which rows are within all limits.
+  if (result.verdicts && file.exists(kWithinLimits)) {
+    found.within_limits = read_along<std::uint8_t>(file, kWithinLimits, {rows});
+    result.verdicts->rows_within = static_cast<std::uint64_t>(std::ranges::count(found.within_limits, 1));
+  }
   if (result.verdicts) {
     result.row_names = has_cases ? found.cases : row_names(found.labels, found.pairing, found.solves.samples());
   }

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -67,6 +68,27 @@ std::string worst_note(const StoredResult& result, std::size_t r) {
                      passes(result, r));
 }
 
+/// Adds the column that says which rows of errors are within all limits, if the study states limits.
+void add_kept(const Evaluation& found, std::vector<FilledColumn>& columns) {
+  if (found.within_limits.empty()) return;
+  columns.push_back({text_column("kept", "limits kept"),
+                     [&found](std::size_t row) { return text_cell(found.within_limits[row] == 1 ? "PASS" : "FAIL"); }});
+}
+
+/// The rows that are not within all limits, "fail: SN001, SN007". Empty if there are none, or if rows have no labels.
+std::string fail_note(const Evaluation& found) {
+  constexpr std::size_t kMostNamed = 40;
+  if (found.labels.names.empty()) return {};
+  std::vector<std::string> failed;
+  for (std::size_t row = 0; row < found.within_limits.size(); ++row) {
+    if (found.within_limits[row] != 1) failed.push_back(found.labels.names[row]);
+  }
+  if (failed.empty()) return {};
+  const std::size_t named = std::min(failed.size(), kMostNamed);
+  const std::string list = fmt::format("fail: {}", fmt::join(std::span(failed).first(named), ", "));
+  return named == failed.size() ? list : fmt::format("{} and {} more", list, failed.size() - named);
+}
+
 Table parts_table(const StoredResult& result) {
   const RowLabels& labels = evaluation_of(result).labels;
   Table table{.name = "parts",
@@ -80,6 +102,7 @@ Table parts_table(const StoredResult& result) {
       {text_column("label", labels.column), [&](std::size_t row) { return text_cell(labels.names[row]); }},
       {number_column("poses", "poses"),
        [&](std::size_t row) { return count_cell(outcomes.empty() ? 0 : outcomes.front()[row].solved); }}};
+  add_kept(evaluation_of(result), columns);
   for (std::size_t h = 0; h < outcomes.size(); ++h) {
     const NamedUnit& response = result.responses[result.headline[h]];
     const std::vector<RowOutcome>& of = outcomes[h];
@@ -107,8 +130,8 @@ Table cases_table(const StoredResult& result) {
   std::vector<FilledColumn> columns{
       {text_column("case", "case"), [&](std::size_t c) { return text_cell(found.cases[c]); }},
       {number_column("poses", "poses"), [&](std::size_t c) { return count_cell(found.count.all()[c]); }}};
-  // A narrow table omits columns with larger numbers first, so the columns of the last response are omitted first.
-  // Those with the number 0 are never omitted.
+  add_kept(found, columns);
+  // A narrow table omits columns with larger numbers first, so those of the last response. 0 is never omitted.
   int dispensable = 0;
   for (const std::size_t r : result.headline) {
     const NamedUnit& response = result.responses[r];
@@ -375,6 +398,7 @@ Table evaluation_table(const StoredResult& result) {
   for (const std::size_t r : result.headline) {
     if (std::string note = worst_note(result, r); !note.empty()) table.notes.push_back(std::move(note));
   }
+  if (std::string note = fail_note(evaluation_of(result)); !note.empty()) table.notes.push_back(std::move(note));
   return table;
 }
 

@@ -17,6 +17,7 @@
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/kinds/what_if/what_if.h"
 #include "engine/report/display.h"
+#include "engine/report/drawn_errors.h"
 #include "engine/report/sketch_view.h"
 #include "engine/report/tables.h"
 
@@ -80,6 +81,9 @@ Table overall_table(const StoredResult& result) {
                   counted(found.solves.front().total(), "sample", "samples"), quantile_heading(found.levels.back()),
                   percent_text(found.levels.back()), overall_error_text(result))}};
   fill(table, result.headline, overall_columns(result));
+  if (std::string given = given_errors_text(result); !given.empty() && !result.verdicts) {
+    table.notes.push_back(std::move(given));
+  }
   return table;
 }
 
