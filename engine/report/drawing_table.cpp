@@ -23,14 +23,18 @@ std::string zone_text(const std::string& key, double size, const std::string& da
   return fmt::format("{}{:.6g}{}", is_size ? "+-" : key + " ", 1e3 * size, datums == "-" ? "" : " " + datums);
 }
 
-/// The number of errors of a feature that are drawn from measured parts. q: index of the feature in the result.
+/// Returns true if an error belongs to a feature. q: position of the feature in the result.
+bool is_of_feature(const DrawingResult& drawing, std::size_t q, const std::string& error) {
+  const std::string& label = drawing.label(q);
+  const std::string limb = drawing.names[q].substr(std::min(label.size(), drawing.names[q].size()));
+  return std::ranges::any_of(
+      kDirections, [&](std::string_view direction) { return error == fmt::format("{}{}{}", label, direction, limb); });
+}
+
+/// The number of errors of a feature that are measured. q: position of the feature in the result.
 std::size_t measured_errors(const StoredResult& result, std::size_t q) {
-  const DrawingResult& found = *result.drawing;
-  const auto is_measured = [&](std::string_view direction) {
-    const std::string name = feature_error_name(found.label(q), direction, found.limb(q));
-    return std::ranges::find(result.measured.names, name) != result.measured.names.end();
-  };
-  return static_cast<std::size_t>(std::ranges::count_if(kFeatureDirections, is_measured));
+  return static_cast<std::size_t>(std::ranges::count_if(
+      result.measured.names, [&](const std::string& error) { return is_of_feature(*result.drawing, q, error); }));
 }
 
 /// Returns true if the zones of a feature are between two planes, so that their size is no diameter. The zones of a
@@ -71,6 +75,19 @@ double largest(std::span<const double> values) {
 }
 
 }  // namespace
+
+std::vector<std::string> feature_of_each_error(const StoredResult& result) {
+  std::vector<std::string> sources = names_of(result.factors);
+  if (!result.drawing) return sources;
+  for (std::string& source : sources) {
+    for (std::size_t q = 0; q < result.drawing->features(); ++q) {
+      if (!is_of_feature(*result.drawing, q, source)) continue;
+      source = result.drawing->names[q];
+      break;
+    }
+  }
+  return sources;
+}
 
 std::optional<Table> drawing_table(const StoredResult& result, std::size_t response) {
   if (!result.drawing) return std::nullopt;

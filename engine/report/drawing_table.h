@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "engine/report/table.h"
 #include "engine/result/result_file.h"
@@ -12,5 +14,8 @@ namespace poesy {
 /// worst case. None if the result has no features, or if the response is neither signed nor the norm of signed
 /// responses.
 std::optional<Table> drawing_table(const StoredResult& result, std::size_t response);
+
+/// For each error, the name of the feature to which it belongs, or its own name if it belongs to none.
+std::vector<std::string> feature_of_each_error(const StoredResult& result);
 
 }  // namespace poesy

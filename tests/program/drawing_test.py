@@ -105,6 +105,16 @@ class Drawing(ProgramTest):
         lines = (self.folder / "tables" / "features.csv").read_text().splitlines()
         self.assertEqual(len(lines), 1 + len(names) * len(features))
 
+    def test_advice_names_features(self):
+        """The feature with the largest share is the first that the report advises to make smaller, not one of its errors."""
+        self.result("mc", 'kind = "monte-carlo"\ndraws = "per machine"\nsamples = 2000\nlimits = { tip_position = "0.12 mm" }').close()
+        tables = json.loads(self.succeeds("show", "mc.h5", "--json"))["tables"]
+        rows = next(table for table in tables if table["name"] == "features")["rows"]
+        first = [row["feature"] for row in rows if row["share"] > 0.9 * rows[0]["share"]]  # others are told from the largest
+        self.succeeds("report", "mc.h5", "-o", "mc.html")
+        advice = re.search(r"what adds most to the scatter of tip_position: (\w+) \(", (self.folder / "mc.html").read_text())
+        self.assertIn(advice.group(1), first)
+
     def test_division(self):
         """Threads, shards and a stop change no bit."""
         analysis = 'kind = "monte-carlo"\ndraws = "per machine"\nsamples = 3000\nlimits = { tip_position = "0.12 mm" }'

@@ -4,9 +4,12 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/base/nan.h"
@@ -17,6 +20,7 @@
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/kinds/what_if/what_if.h"
 #include "engine/report/display.h"
+#include "engine/report/drawing_table.h"
 #include "engine/report/drawn_errors.h"
 #include "engine/report/sketch_view.h"
 #include "engine/report/tables.h"
@@ -413,19 +417,29 @@ std::string drivers_text(const StoredResult& result, std::size_t r) {
                      text);
 }
 
-/// Advice such as "Make smaller first what adds most to the scatter of gap: flange_x (36 %), ...", for a limited
-/// response. Empty if the shares of errors are not known.
+/// The share of each feature, which is the sum over its errors, and of each error that belongs to no feature.
+std::map<std::string, double> shares_of_sources(const StoredResult& result, std::span<const double> shares) {
+  const std::vector<std::string> sources = feature_of_each_error(result);
+  std::map<std::string, double> sums;
+  for (std::size_t p = 0; p < sources.size(); ++p) sums[sources[p]] += shares[p];
+  return sums;
+}
+
+/// Advice like "Make smaller first what adds most to the scatter of tip_z: flange (36 %), ...", with features or
+/// errors. Empty if their shares are not known.
 std::string limit_drivers_text(const StoredResult& result) {
   constexpr std::size_t kMost = 3;
   const auto shares = response_shares(result);
   if (!shares) return {};
-  const auto share = [&](std::size_t p) { return shares->each[p]; };
-  std::vector<std::size_t> order = largest_first(positions(result.factors.size()), share);
-  std::erase_if(order, [&](std::size_t p) { return !(share(p) > 0.0); });
+  std::vector<std::pair<std::string, double>> order;
+  for (const auto& [name, share] : shares_of_sources(result, shares->each)) {
+    if (share > 0.0) order.emplace_back(name, share);
+  }
+  std::ranges::stable_sort(order, std::ranges::greater(), &std::pair<std::string, double>::second);
   order.resize(std::min(kMost, order.size()));
   std::string text;
-  for (const std::size_t p : order) {
-    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", result.factors[p].name, percent_text(share(p)));
+  for (const auto& [name, share] : order) {
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", name, percent_text(share));
   }
   if (text.empty()) return {};
   return fmt::format("Make smaller first what adds most to the scatter of {}: {}.",
