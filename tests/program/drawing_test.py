@@ -115,6 +115,9 @@ class Drawing(ProgramTest):
         advice = re.search(r"what adds most to the scatter of tip_position: (\w+) \(", (self.folder / "mc.html").read_text())
         self.assertIn(advice.group(1), first)
 
+    def test_template_of_an_allocation_joins_limbs_that_are_alike(self):
+        self.assertIn("zones = \"all\", each = true, identical_limbs = [1, 2, 3]", self.succeeds("template", "delta.toml", "allocation"))
+
     def test_division(self):
         """Threads, shards and a stop change no bit."""
         analysis = 'kind = "monte-carlo"\ndraws = "per machine"\nsamples = 3000\nlimits = { tip_position = "0.12 mm" }'
@@ -277,6 +280,7 @@ bounds = ["0.002 mm", "0.2 mm"]
             exact = 1e3 * tolerance[zones[f"{row['feature']}.{row['symbol']}"]]
             self.assertLessEqual(float(row["zone_mm"]), exact)
             self.assertGreater(float(row["zone_mm"]), 0.999 * exact)
+        self.assertIn("cost: of each tolerance once, however many limbs share it", " ".join(self.succeeds("show", "two.h5").split()))
         rail = rows[1]
         self.assertEqual([rail[key] for key in ("limbs", "sign", "shape", "datums", "length_mm", "remark")],
                          ["1-3", "\u2316", "cylinder", "A|B", "500", "perpendicularity: not needed"])

@@ -1,9 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <map>
+#include <set>
 
 #include "engine/base/text.h"
 #include "engine/kinds/allocation/alike_limbs.h"
@@ -104,6 +107,28 @@ std::string parts_lines(const Study& study) {
   return text;
 }
 
+/// A commented line of a template that names the first two limbs as an example of the key identical_limbs. Empty if the
+/// mechanism has fewer than two limbs.
+std::string shown_limbs(const ModelDescription& model) {
+  std::set<std::size_t> limbs;
+  for (const Factor& factor : model.factors) limbs.insert(factor.limb);
+  if (limbs.size() < 2) return {};
+  return fmt::format("# identical_limbs = [{}, {}]\n", *limbs.begin(), *std::next(limbs.begin()));
+}
+
+/// A line of a template with the key identical_limbs for all limbs that have features of one name, which share a
+/// tolerance in most drawings. If there are none, the line of shown_limbs().
+std::string alike_limbs(const ModelDescription& model) {
+  std::map<std::string, std::set<std::size_t>> limbs_of;
+  for (const Feature& feature : model.features) limbs_of[feature.label].insert(feature.limb);
+  std::set<std::size_t> alike;
+  for (const auto& [label, limbs] : limbs_of) {
+    if (limbs.size() > 1) alike.insert(limbs.begin(), limbs.end());
+  }
+  if (alike.empty()) return shown_limbs(model);
+  return fmt::format("identical_limbs = [{}]\n", fmt::join(alike, ", "));
+}
+
 /// The TOML table [[analysis.parts]] of a template in which each error of this dimension is a part of its own. Empty if
 /// the mechanism has no such error.
 std::string shown_block(Dimension dimension, const Study& study) {
@@ -123,7 +148,7 @@ std::string shown_zone_block(const Study& study) {
   return fmt::format(
       "\n[[analysis.parts]]\nzones = \"all\"\neach = true\n{}cost = {{ law = \"reciprocal\", b = 1, unit = \"{}\" "
       "}}\n# bounds = [{}, {}]\n",
-      shown_identical_limbs(study), display_unit(Dimension::length).name, example_size(Dimension::length, 0.01),
+      alike_limbs(model), display_unit(Dimension::length).name, example_size(Dimension::length, 0.01),
       example_size(Dimension::length, 1.0));
 }
 

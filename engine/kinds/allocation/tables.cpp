@@ -70,6 +70,15 @@ std::string drawing_caption(const Result& found) {
   return {};
 }
 
+/// Adds a note on how the cost counts zones that several limbs share.
+void add_copies_note(const Result& found, Table& table) {
+  const auto is_shared = [](const std::string& limbs) { return limbs.find_first_of("-, ") != std::string::npos; };
+  if (!has_costs(found) || std::ranges::none_of(found.zone_limbs, is_shared)) return;
+  table.notes.emplace_back(
+      "cost: of each tolerance once, however many limbs share it; where each copy costs, state a cost that many times "
+      "as large");
+}
+
 /// Adds a note on how far the cost may be from the least cost.
 void add_bound_note(const Result& found, Table& table) {
   if (std::isnan(found.lower_bound) || !has_costs(found)) return;
@@ -206,6 +215,7 @@ Table drawing_table(const Result& found, RowOrder order) {
         "ends, not what the part needs");
   }
   if (std::string note = fixed_note(found); !note.empty()) table.notes.push_back(std::move(note));
+  add_copies_note(found, table);
   add_bound_note(found, table);
   std::vector<std::size_t> parts = ordered_parts(found, order);
   if (found.has_zones()) parts = drawn_parts(found, parts);
