@@ -118,6 +118,13 @@ class Drawing(ProgramTest):
     def test_template_of_an_allocation_joins_limbs_that_are_alike(self):
         self.assertIn("zones = \"all\", each = true, identical_limbs = [1, 2, 3]", self.succeeds("template", "delta.toml", "allocation"))
 
+    def test_limbs_of_a_part_are_numbers(self):
+        self.write("named.toml", STUDY.format(fidelity="exact", zones="errors.zones = { distribution = \"normal\", sigmas = 3 }", analysis='kind = "allocation"\n'
+                   'limits = { tip_position = "0.12 mm" }\nparts = [ { zones = "all", each = true, identical_limbs = ["leg"] } ]'))
+        done = self.poesy("check", "named.toml")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("is 'leg', but this key takes the numbers of limbs; write some of 1, 2, 3", " ".join(done.stderr.decode().split()))
+
     def test_division(self):
         """Threads, shards and a stop change no bit."""
         analysis = 'kind = "monte-carlo"\ndraws = "per machine"\nsamples = 3000\nlimits = { tip_position = "0.12 mm" }'

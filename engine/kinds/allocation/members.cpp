@@ -155,6 +155,11 @@ Limbs read_limbs(const StudyValue& value, const ModelDescription& model) {
   for (const Factor& factor : model.factors) known.insert(factor.limb);
   Limbs limbs;
   for (const StudyValue& element : value.list()) {
+    if (element.is_text()) {
+      element.fail(
+          "is '" + printable(element.text()) + "', but this key takes the numbers of limbs",
+          fmt::format("write some of {}; each copy of a limb has a number of its own", fmt::join(known, ", ")));
+    }
     limbs.push_back(static_cast<std::size_t>(element.whole_number(0)));
     if (std::ranges::count(limbs, limbs.back()) > 1) {
       element.fail(fmt::format("names limb {} a second time", limbs.back()), "remove one of them");
