@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -98,6 +99,17 @@ std::string study_lines(const StoredResult& result, std::size_t width) {
   return text;
 }
 
+/// Shortens the tables of single errors of a result whose features have a table of their own.
+void shorten_tables_of_errors(std::vector<Table>& tables) {
+  constexpr std::size_t kShown = 20;
+  for (Table& table : tables) {
+    const bool of_errors = table.name == "first_order" || table.name == "mean_square_shares";
+    if (!of_errors || table.rows.size() <= kShown) continue;
+    keep_first(kShown, std::span(&table, 1));
+    table.notes.back() += "; --top N shows more, --json all";
+  }
+}
+
 std::size_t width_of(const ShowOptions& options) { return options.width.value_or(output_width()); }
 
 int show_one(const ShowOptions& options) {
@@ -110,7 +122,11 @@ int show_one(const ShowOptions& options) {
   std::vector<Table> tables = result_tables(kind, result, {response, order});
   check_ranks(options, path, result, tables);
   const SolveTally tally = kind.tally(result);
-  if (options.top) keep_first(*options.top, tables);
+  if (options.top) {
+    keep_first(*options.top, tables);
+  } else if (result.drawing && !options.json) {
+    shorten_tables_of_errors(tables);
+  }
   const std::size_t width = width_of(options);
   if (!options.json && !shows_signs()) use_words(tables);
   print(options.json ? json_of(result, tally.total(), tables)

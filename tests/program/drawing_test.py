@@ -98,6 +98,7 @@ class Drawing(ProgramTest):
             squares = [pose["zones"][feature]["rms_tip"] ** 2 for pose in EXPECTED["poses"]]
             np.testing.assert_allclose(effect, np.sqrt(np.mean(squares)), rtol=1e-9, err_msg=feature)
         shown = self.succeeds("show", "mc.h5", "--response", "tip_position")
+        self.assertIn("20 of 78 rows shown; --top N shows more, --json all", shown)
         self.assertIn("What the features of the drawing do to tip_position in their zones, to first order", shown)
         self.assertIn("rod_bore_3  -                  parallelism 0.03 A", shown)
         self.assertIn("worst case, with all features in their zones, to first order: 0.7656 mm", " ".join(shown.split()))
