@@ -142,7 +142,9 @@ class Builder {
   Vector3 joint_point(const LimbLines& limb, const JointLines& joint, std::size_t depth = 0) const {
     if (depth > limb.joints.size()) {
       throw InputError(joint.place, joint.key + " '" + joint.name + "' takes its point from itself",
-                       "write at = [x, y, z] for one of them");
+                       named_point(limb, joint.name) != nullptr
+                           ? "a point has the name of the joint: rename one of them"
+                           : "write at = [x, y, z] for one of them");
     }
     if (joint.at) return numbers_.point(*joint.at);
     if (joint.at_point) return place_of(limb, *joint.at_point, depth);

@@ -274,6 +274,9 @@ TEST(MechanismFile, RefusesWhatIsWrongInOthers) {
           {"at = \"elbow\"", "at = \"ellbow\"",
            "m.toml:23:34: limb[0].joints[1].at 'ellbow' is neither a joint of this limb nor a point; did you mean "
            "'elbow'?"},
+          {"name = \"B\"", "name = \"elbow\"",
+           "m.toml:23:3: limb[0].joints[1] 'elbow' takes its point from itself; a point has the name of the joint: "
+           "rename one of them"},
           {"elbow = [\"220 mm\"", "C = [\"220 mm\"",
            "m.toml:23:34: limb[0].joints[1].at 'elbow' is neither a joint of this limb nor a point; known: A, B, C, C"},
           {"elbow = [\"220 mm\"", "elbow = [\"220 deg\"",
