@@ -119,7 +119,9 @@ std::string coordinates_text(const StoredResult& result, std::size_t pose) {
   for (std::size_t c = 0; c < result.pose_coordinates.size(); ++c) {
     const NamedUnit& named = result.pose_coordinates[c];
     const double value = result.poses[PoseIndex(pose)][c] / display(named).si;
-    const std::string number = number_text(std::abs(value) < kRounding ? 0.0 : value, 3);
+    const bool is_large = std::abs(value) >= 999.5;  // three digits would write it with an exponent
+    const std::string number =
+        is_large ? fmt::format("{:.0f}", value) : number_text(std::abs(value) < kRounding ? 0.0 : value, 3);
     text += (text.empty() ? "" : ", ") + named.name + " " + with_unit_text(number, named);
   }
   return text;

@@ -64,14 +64,20 @@ void append_drawing_tables(CsvTables& tables, const std::vector<std::string>& re
   const auto of = [features](const auto& array) {
     return [&array, features](std::size_t line) { return array(line / features, line % features); };
   };
-  const auto text = [features](const auto& array) {
+  const auto number = [features](const DrawingResult::Sizes& array) {
     return [&array, features](std::size_t line) { return array(line % features); };
+  };
+  const auto text = [features](const DrawingResult::Texts& array) {
+    return [&array, features](std::size_t line) {
+      const std::string& zone = array(line % features);
+      return zone == "-" ? std::string() : zone;
+    };
   };
   table.more = {{"feature", [&, features](std::size_t line) { return found.names[line % features]; }},
                 {"location", text(found.location)},
                 {"orientation", text(found.orientation)}};
-  table.columns = {{"location_zone [m]", text(found.location_zone)},
-                   {"orientation_zone [m]", text(found.orientation_zone)},
+  table.columns = {{"location_zone [m]", number(found.location_zone)},
+                   {"orientation_zone [m]", number(found.orientation_zone)},
                    {"effect [SI]", of(found.effect)},
                    {"share", of(found.share)},
                    {"worst_share", of(found.worst_share)}};

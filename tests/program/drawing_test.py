@@ -105,6 +105,7 @@ class Drawing(ProgramTest):
         self.succeeds("export", "mc.h5", "-d", "tables")
         lines = (self.folder / "tables" / "features.csv").read_text().splitlines()
         self.assertEqual(len(lines), 1 + len(names) * len(features))
+        self.assertNotIn("'", "".join(lines))
 
     def test_advice_names_features(self):
         """The feature with the largest share is the first that the report advises to make smaller, not one of its errors."""
@@ -289,6 +290,8 @@ bounds = ["0.002 mm", "0.2 mm"]
             self.assertLessEqual(float(row["zone_mm"]), exact)
             self.assertGreater(float(row["zone_mm"]), 0.999 * exact)
         self.assertIn("cost: of each tolerance once, however many limbs share it", " ".join(self.succeeds("show", "two.h5").split()))
+        self.succeeds("report", "two.h5", "-o", "two.html")
+        self.assertIn(f"{len(rows)} parts cost ", (self.folder / "two.html").read_text(encoding="utf-8"))
         rail = rows[1]
         self.assertEqual([rail[key] for key in ("limbs", "sign", "shape", "datums", "length_mm", "remark")],
                          ["1-3", "\u2316", "cylinder", "A|B", "500", "perpendicularity: not needed"])

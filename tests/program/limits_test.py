@@ -167,6 +167,13 @@ class Limits(ProgramTest):
         self.assertTrue(row["place"].startswith("sample 2, pose "))
         self.assertIn(b"1 of 3 rows are within the limit", done.stdout)
 
+    def test_places_have_no_exponents(self):
+        self.write("cases.toml", 'format = "poesy-study"\nversion = 1\n' + CASES % "1e-3")
+        self.write("errors.csv", "delta_1_1_y\n0.0001\n")
+        self.write("poses.csv", "z [mm],beta,gamma\n-1000,0.1,0.1\n")
+        done = self.poesy("evaluate", "cases.toml", "--poses", "poses.csv", "--errors", "errors.csv", "--quiet")
+        self.assertIn(b"pose 0 (z -1000 mm, beta 5.73 deg", done.stdout)
+
     def test_parts_are_judged_one_by_one(self):
         """Each part passes or fails by itself, whatever the title of the column with its name is."""
         self.write("cases.toml", 'format = "poesy-study"\nversion = 1\n' + CASES % "1e-3")

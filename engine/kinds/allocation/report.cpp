@@ -196,7 +196,7 @@ Answer answer(const StoredResult& result) {
   const Result& found = allocation_of(result);
   if (found.poses() == 0 || found.parts() == 0) return {};
   const YieldVerdict& shown = found.certificate;
-  const std::string parts = counted(found.parts(), "part", "parts");
+  const std::string parts = counted(parts_on_drawing(found), "part", "parts");
   const std::string largest = largest_parts(found);
   Answer lines{{"Answer", as_sentence(certificate_text(found))},
                {has_costs(found) ? "Cost" : "Parts",

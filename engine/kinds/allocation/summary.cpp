@@ -75,6 +75,12 @@ std::string certificate_text(const AllocationResult& found) {
   return fmt::format("not certified: it is not shown with {} that at least {} {} {}", sure, asked, good, counts);
 }
 
+std::size_t parts_on_drawing(const AllocationResult& found) {
+  std::size_t drawn = 0;
+  for (std::size_t n = 0; n < found.parts(); ++n) drawn += found.is_left_out(n) ? 0 : 1;
+  return drawn;
+}
+
 std::string drawing_number(double tolerance, const std::string& si_unit) {
   constexpr int kDigits = 4;
   return number_text(rounded_down(tolerance / display_unit(dimension_of(si_unit)).si, kDigits), kDigits);

@@ -28,6 +28,9 @@ const AllocationResult::Parts<double>& shown_shares(const AllocationResult& foun
 /// Positions of the parts in the chosen order: by shown_shares() descending, by name, or as in the study.
 std::vector<std::size_t> ordered_parts(const AllocationResult& found, RowOrder order);
 
+/// The number of parts whose tolerance the drawing needs, which are all except orientations that are left out.
+std::size_t parts_on_drawing(const AllocationResult& found);
+
 /// The certificate in words: "certified: at least 99.73 % of the machines are within all limits at all poses, ...", or
 /// the reason why the tolerances are not certified.
 std::string certificate_text(const AllocationResult& found);

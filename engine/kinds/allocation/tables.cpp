@@ -51,9 +51,7 @@ bool is_rounded(const Result& found) {
 }
 
 std::string drawing_caption(const Result& found) {
-  std::size_t drawn = 0;
-  for (std::size_t n = 0; n < found.parts(); ++n) drawn += found.is_left_out(n) ? 0 : 1;
-  const std::string parts = counted(drawn, "part", "parts");
+  const std::string parts = counted(parts_on_drawing(found), "part", "parts");
   const std::string cost = has_costs(found) ? ", which cost " + cost_text(found.total_cost) : "";
   switch (found.aim) {
     case Aim::least_cost:
