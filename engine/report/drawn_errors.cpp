@@ -8,11 +8,11 @@
 #include <utility>
 
 #include "engine/base/units.h"
-#include "engine/random/distribution.h"
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
 #include "engine/schema/settings.h"
 #include "engine/study/limit_keys.h"
+#include "engine/study/study.h"
 
 namespace poesy {
 namespace {
