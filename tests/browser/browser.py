@@ -79,7 +79,8 @@ class Browser:
             self.run(self.axe_source)
         found = self.driver.execute_async_script(
             """const done = arguments[1];
-            axe.run(document, {runOnly: arguments[0], resultTypes: ["violations"]}).then((result) => done(result.violations));""",
+            axe.run(document, {runOnly: arguments[0], resultTypes: ["violations"]})
+              .then((result) => done(result.violations));""",
             rules)
         return [f"{rule['id']}: {rule['help']}: {node['html'][:200]}: {node['failureSummary'][:300]}"
                 for rule in found for node in rule["nodes"]]

@@ -1,6 +1,6 @@
 """Reports in headless Chromium: drawn, readable, self-contained, usable by keyboard, and faultless to axe-core.
 
-POESY_SCREENSHOTS names a folder for screenshots of every page, and the page as it is printed; without it there are none.
+POESY_SCREENSHOTS names a folder for screenshots of every page, and the page as it is printed; without it none is kept.
 """
 
 import os
@@ -294,8 +294,9 @@ class Figures(PageTest):
             self.assertIn(f"Predicted cost {cost}; the study: 13.", text)
 
     def test_names_are_set_as_in_print_and_stay_plain_for_all_else(self):
-        page = figures_page(WEB, add_bars).replace("<h1>Figures</h1>", "<h1>Figures of epsilon_1_4_y, q_0.95 and beta</h1>"
-                                         "<p id='plain'>tip_x, results/a_1.h5, alphabet, e.g. not_converged</p>")
+        page = figures_page(WEB, add_bars).replace(
+            "<h1>Figures</h1>", "<h1>Figures of epsilon_1_4_y, q_0.95 and beta</h1>"
+            "<p id='plain'>tip_x, results/a_1.h5, alphabet, e.g. not_converged</p>")
         self.open(page)
         heading = self.browser.run(
             """const names = [...document.querySelectorAll("h1 .name")];

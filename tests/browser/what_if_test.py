@@ -40,6 +40,15 @@ class WhatIf(ReportTest):
         text = text.replace('fidelity = "first-order"\n', "").replace("count = 20", "count = 12")
         return self.result(name, text.replace("[analysis]", extra + "[analysis]"))
 
+    of_plain_study = None  # the bytes of its result, once it was run
+
+    def plain_study(self):
+        """The result at the study's own sizes, which is run once for all tests."""
+        if WhatIf.of_plain_study is None:
+            WhatIf.of_plain_study = (self.folder / self.study("study")).read_bytes()
+        (self.folder / "study.h5").write_bytes(WhatIf.of_plain_study)
+        return "study.h5"
+
     def sliders(self):
         return self.browser.driver.find_elements(By.CSS_SELECTOR, ".what-if-slider")
 
@@ -47,7 +56,7 @@ class WhatIf(ReportTest):
         return self.browser.run("return document.querySelector('.what-if-said').textContent")
 
     def test_predictions_are_what_runs_find(self):
-        page = self.report("what-if", self.study("study"))
+        page = self.report("what-if", self.plain_study())
         self.browser.open(page, 1400)
         names = self.browser.run(
             "return [...document.querySelectorAll('.what-if-slider label')].map((label) => label.textContent)")
@@ -78,14 +87,14 @@ class WhatIf(ReportTest):
             return float(file["yield/value"][()])
 
     def test_the_section_is_drawn_and_faultless(self):
-        page = self.report("what-if", self.study("study"))
+        page = self.report("what-if", self.plain_study())
         self.check_page(page)
         data = json.loads(re.search(r'id="report-data">(.*?)</script>', page.read_text()).group(1))
         numbers = sum(len(text) for name, text in data["arrays"].items() if name.startswith("what_if/"))
         self.assertLess(numbers, 500_000)
 
     def test_sliders_are_moved_by_keys_and_reset(self):
-        self.browser.open(self.report("what-if", self.study("study")), 400)
+        self.browser.open(self.report("what-if", self.plain_study()), 400)
         first = self.said()
         slider = self.browser.driver.find_element(By.CSS_SELECTOR, ".what-if-slider input")
         before = slider.get_attribute("aria-valuetext")
@@ -99,7 +108,7 @@ class WhatIf(ReportTest):
         self.assertIn("certified only at the study's sizes", note)
 
     def test_paper_and_pages_without_scripts_have_no_sliders(self):
-        page = self.report("what-if", self.study("study"))
+        page = self.report("what-if", self.plain_study())
         self.browser.open(page, 1000)
         self.browser.printed_width(680)
         boxes = "return document.querySelector('[data-figure=what-if]').getClientRects().length"

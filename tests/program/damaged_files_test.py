@@ -1,7 +1,7 @@
 """Files that were cut off or had bits turned over: no command crashes or hangs, and no number changes without a warning.
 
 For every kind of result, for a shard and for a checkpoint. POESY_DAMAGES says how many flips of one to 64 bits each of
-them gets (default 10), and with them a fifth as many truncations; POESY_DAMAGE_SEED which ones.
+them gets (default 5), and with them a fifth as many truncations; POESY_DAMAGE_SEED which ones.
 """
 
 import json
@@ -17,7 +17,7 @@ from deadline import run_in_time
 from poesy_program import main
 from resumption import STUDIES, ResumptionTest
 
-FLIPS = int(os.environ.get("POESY_DAMAGES", "10"))
+FLIPS = int(os.environ.get("POESY_DAMAGES", "5"))
 TRUNCATIONS = max(1, FLIPS // 5)
 SEED = int(os.environ.get("POESY_DAMAGE_SEED", "1"))
 # What a page says of the run, which the content hash leaves out: in its "What was run", and the solves below its title.
@@ -26,7 +26,7 @@ RUN_FACTS = re.compile(rb"""<tr><th scope="row">(?:date \(UTC\)|machine|processo
 CHANGED = b"was changed since it was written"
 # Each kind's study with so few samples or poses that it has a result at once.
 SMALLER = [("samples = 12300", "samples = 60"), ("samples = 62300", "samples = 60"), ("samples = 2100", "samples = 64"), ("samples = 30000", "samples = 3000"),
-           ("count = 4000", "count = 20"), ("count = 1500", "count = 20"), ("count = 20000", "count = 30")]
+           ("count = 4000", "count = 20"), ("count = 1500", "count = 20"), ("count = 5000", "count = 30")]
 READERS = [("verify", "r.h5"), ("show", "r.h5"), ("show", "r.h5", "--json"), ("export", "r.h5", "-d", "tables"),
            ("report", "r.h5", "-o", "r.html")]
 SENSITIVITY_READERS = [("tolerances", "r.h5", "--response", "linear_deformation", "--extrapolate", "-d",

@@ -13,7 +13,7 @@ from poesy_program import ProgramTest, main
 from six_rods import PLACES, machines
 
 DATA = Path(os.environ["POESY_DATA"])
-SIGMA, MACHINES = 5e-5, 20_000
+SIGMA, MACHINES = 5e-5, 8_000
 RODS = [f"rod_{k}" for k in range(1, 7)]
 
 # Each limit as a study states it, and whether a machine with these heights [places] keeps it.
@@ -73,7 +73,7 @@ class Flatness(ProgramTest):
             with h5py.File(self.folder / "out.h5") as file:
                 found = file["yield/value"][()]
                 self.assertEqual(file["limits/within"][0], round(found * MACHINES))
-            # Two shares of 20 000 machines each: 4 standard errors, a false alarm in 2200 runs of seven.
+            # Two shares of as many machines each: 4 standard errors, a false alarm in 2200 runs of seven.
             self.assertLess(abs(found - own), 4.0 * np.sqrt(2.0 * own * (1.0 - own) / MACHINES), limit)
 
     def test_every_row_is_judged_as_by_own_kinematics(self):

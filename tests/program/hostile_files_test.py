@@ -40,6 +40,15 @@ CHANGED = b"was changed since it was written"
 SIGNS = [MARK.encode(), b"4242424", b"4.242424", b"84,79,80", b"root:x:0"]
 
 
+def commands_for(structure, commands):
+    """All of them where each reads the structure in its own way. What is no tree of its own is refused where any file
+    is opened: then `verify` and two of the others, which differ from one structure to the next."""
+    if COUNT == 0 or structure.sort in ("text", "shape"):
+        return commands
+    verify, *others = commands
+    return [verify, *random.Random(structure.name).sample(others, 2)]
+
+
 class HostileFiles(ResumptionTest):
     def setUp(self):
         super().setUp()
@@ -77,6 +86,7 @@ class HostileFiles(ResumptionTest):
 
     def put_through(self, structure, commands):
         folder = self.make(structure)
+        commands = commands_for(structure, commands)
         try:
             return [fault for command in commands for fault in self.faults(structure, folder, command)]
         finally:
@@ -85,7 +95,7 @@ class HostileFiles(ResumptionTest):
     def put_all_through(self, chosen, commands):
         with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
             faults = [fault for of_one in pool.map(lambda one: self.put_through(one, commands), chosen) for fault in of_one]
-        print(f"{len(chosen)} structures, {len(chosen) * len(commands)} commands")
+        print(f"{len(chosen)} structures, {sum(len(commands_for(one, commands)) for one in chosen)} commands")
         self.assertEqual(faults, [])
 
     def test_structures(self):

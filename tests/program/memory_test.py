@@ -28,14 +28,14 @@ STUDIES = {
     "sensitivity": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=5000, kind="sensitivity")
     + 'factors = "all"\nsamples = 2\n',
     "a smaller last unit": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=1000, kind="sensitivity")
-    + 'factors = "all"\nsamples = 1500\n',
+    + 'factors = "all"\nsamples = 1001\n',
     "two fidelities": HEAD.format(model="3-prs", fidelity='fidelity = "both"', poses=5000, kind="sensitivity")
     + 'factors = "all"\nsamples = 2\n',
-    "cases": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=24000, kind="evaluate") + CASES,
+    "cases": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=12000, kind="evaluate") + CASES,
     "coupling": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=900, kind="coupling") + BLOCKS + SIZES
     + 'worst_case = "sum"\n',
-    "worst cases": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=600, kind="coupling") + SIZES,
-    "monte-carlo": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=25000, kind="monte-carlo")
+    "worst cases": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=400, kind="coupling") + SIZES,
+    "monte-carlo": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=18000, kind="monte-carlo")
     + 'draws = "per pose"\nfactors = "all"\nsamples = 2\n',
     "machines": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=1000, kind="monte-carlo")
     + 'draws = "per machine"\nfactors = "all"\nsamples = 8000\nlimits.position = "0.1 mm"\n',
@@ -131,7 +131,7 @@ class Memory(ProgramTest):
     def test_peak_of_exporting(self):
         """A column of a table takes no memory of its own, however many poses there are."""
         program = self.peak_of_program()
-        self.write("study.toml", HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=40000, kind="sensitivity")
+        self.write("study.toml", HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=20000, kind="sensitivity")
                    + 'factors = ["a_x_1", "theta_A_x_1"]\nsamples = 2\n')
         self.succeeds("run", "study.toml", "-o", "r.h5", "--quiet")
         peak = peak_of("export", "r.h5", "-d", "tables", cwd=self.folder)

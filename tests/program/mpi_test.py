@@ -91,7 +91,7 @@ class RankTest(ResumptionTest):
 @unittest.skipUnless(HAS_MPI, "this poesy is built without MPI")
 class Mpi(RankTest):
     def test_same_content_as_one_process(self):
-        """One kind on one rank to four; each of the others on two, three or four in turn, as all divide their units alike."""
+        """One kind on one to four ranks; each of the others on two, three or four in turn: all divide units alike."""
         for number, (kind, study) in enumerate(FEW_UNITS.items()):
             expected = self.undisturbed(study)
             for ranks in (1, 2, 3, 4) if number == 0 else (2 + number % 3,):

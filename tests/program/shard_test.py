@@ -34,7 +34,7 @@ class Shards(ResumptionTest):
         self.assertFalse((self.folder / "all.h5").exists())
 
     def test_every_kind(self):
-        """One kind as one shard, two and five; each of the others as two or five in turn, as all divide their units alike."""
+        """One kind as one shard, two and five; each of the others as two or five in turn: all divide units alike."""
         divided = [kind for kind, study in STUDIES.items() if study not in (ALLOCATION, ZONES, IDENTIFICATION)]
         for number, kind in enumerate(divided):
             expected = self.undisturbed(with_few_units(STUDIES[kind]))

@@ -60,6 +60,8 @@ class Machines:
             open_by = self.lengths - np.linalg.norm(self.legs(), axis=2)
             step = np.linalg.solve(self.jacobian(), open_by[:, :, None])[:, :, 0]
             self.R, self.p = rotations(step[:, :3]) @ self.R, self.p + step[:, 3:]
+            if np.abs(step).max() < 1e-10:  # the next would be its square
+                break
         assert np.abs(self.lengths - np.linalg.norm(self.legs(), axis=2)).max() < 1e-14
 
     def moved(self):
