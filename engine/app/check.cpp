@@ -16,6 +16,7 @@
 #include "engine/storage/content_hash.h"
 #include "engine/storage/h5.h"
 #include "engine/study/bare_numbers.h"
+#include "engine/study/mechanism_doubts.h"
 #include "engine/study/study.h"
 #include "engine/study/study_file.h"
 #include "models/registry.h"
@@ -111,9 +112,8 @@ int check(const std::string& path) {
   }
   for (const std::string& line : model->mobility()) print("# mobility: " + line + "\n");
   for (const std::string& remark : model->remarks()) print("# " + remark + "\n");
-  for (const std::string& unusual : model->unusual_geometry()) {
-    print("# hint: " + unusual + "; is that meant?\n");
-  }
+  for (const std::string& doubt : mechanism_doubts(*model)) print("# hint: " + doubt + "\n");
+  for (const std::string& unusual : model->unusual_errors()) print("# hint: " + asked_back(unusual) + "\n");
   print(trajectory_line(poses, study.model()));
   for (const RejectedPoses& rejected : poses.rejected) {
     print(fmt::format("# rejected: {} candidate poses, {}\n", rejected.count, rejected.reason));

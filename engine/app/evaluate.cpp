@@ -84,10 +84,13 @@ SelectedPoses read_reachable_poses(const std::string& path, const Model& model) 
 /// The poses of the file that the user names, or, if the user names none, the poses that the study selects; none if the
 /// user stopped the search for them.
 std::optional<SelectedPoses> poses_of(const EvaluateOptions& options, const Study& study, const Model& model) {
-  if (!options.poses.empty()) return read_reachable_poses(options.poses, model);
+  if (!options.poses.empty()) {
+    warn_of_mechanism(model);
+    return read_reachable_poses(options.poses, model);
+  }
   auto poses = find_poses(study, model, {.quiet = options.quiet, .stop = &catch_interrupts()});
   if (!poses) return std::nullopt;
-  for (const std::string& doubt : doubts_of(study, *poses)) warn_of(doubt);
+  for (const std::string& doubt : all_doubts(study, model, *poses)) warn_of(doubt);
   return poses;
 }
 

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "engine/app/progress.h"
 #include "engine/app/terminal.h"
@@ -26,8 +28,10 @@
 #include "engine/result/described.h"
 #include "engine/result/shard_file.h"
 #include "engine/storage/file_writer.h"
+#include "engine/study/bare_numbers.h"
 #include "engine/study/calibration.h"
 #include "engine/study/limit_keys.h"
+#include "engine/study/mechanism_doubts.h"
 #include "engine/study/study_kind.h"
 #include "models/registry.h"
 
@@ -326,6 +330,16 @@ std::string memory_text(std::size_t bytes) {
 FileError too_little_memory(const std::string& path, const std::string& work, const std::string& needed) {
   return {path, fmt::format("there is not enough memory for {}: it takes {} besides the program's own", work, needed),
           "do it where there is more, raise the limit (ulimit -v), or ask for fewer poses or errors"};
+}
+
+void warn_of_mechanism(const Model& model) {
+  for (const std::string& doubt : mechanism_doubts(model)) say(Message::warning, doubt);
+}
+
+std::vector<std::string> all_doubts(const Study& study, const Model& model, const SelectedPoses& poses) {
+  std::vector<std::string> list = mechanism_doubts(model);
+  std::ranges::copy(doubts_of(study, poses), std::back_inserter(list));
+  return list;
 }
 
 StoredResult read_result_with_warning(const std::string& path) {

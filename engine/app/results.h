@@ -94,6 +94,12 @@ std::string memory_text(std::size_t bytes);
 /// needed: the memory that the work needs, as memory_text() gives it.
 FileError too_little_memory(const std::string& path, const std::string& work, const std::string& needed);
 
+/// Warns on stderr of what looks like a mistake in the mechanism (mechanism_doubts()).
+void warn_of_mechanism(const Model& model);
+
+/// What looks like a mistake in the mechanism, and in the numbers of the study's tables (doubts_of()), one line each.
+std::vector<std::string> all_doubts(const Study& study, const Model& model, const SelectedPoses& poses);
+
 /// Reads a result file. Warns on stderr if the file was changed after it was written. Throws FileError.
 StoredResult read_result_with_warning(const std::string& path);
 

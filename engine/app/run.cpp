@@ -25,7 +25,6 @@
 #include "engine/result/result_file.h"
 #include "engine/run/ranks/team.h"
 #include "engine/run/run_options.h"
-#include "engine/study/bare_numbers.h"
 #include "engine/study/poses/pose_selection.h"
 #include "engine/study/study.h"
 #include "engine/study/study_file.h"
@@ -195,7 +194,7 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   resumable.start(identity, options.quiet);
   if (team != nullptr && !team->agree(text_of(identity), threads, &stop))
     return leave_before_the_start(*team, resumable);
-  for (const std::string& doubt : doubts_of(study, *poses)) say(Message::warning, doubt);
+  for (const std::string& doubt : all_doubts(study, *model, *poses)) say(Message::warning, doubt);
   say_rejected(*poses, options.quiet);
   for (const std::string& note : {calibration_text(study), held_errors_text(study)}) {
     if (!note.empty() && !options.quiet) say(Message::note, note);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -24,6 +25,7 @@
 #include "engine/report/table.h"
 #include "engine/report/tables.h"
 #include "engine/result/result_file.h"
+#include "engine/study/mechanism_doubts.h"
 #include "engine/study/study.h"
 #include "models/registry.h"
 
@@ -82,12 +84,14 @@ void show_alone(const std::string& response, StoredResult& result) {
   result.headline = result.signed_headline = {static_cast<std::size_t>(at)};
 }
 
-/// The remarks of the mechanism (Model::remarks()) and, unless a table of errors was solved, notes on calibration and
-/// constant errors. Empty if this program cannot read the result's study.
+/// Notes on the mechanism's numbers, warnings of what looks like a mistake in it, and, unless a table of errors was
+/// solved, on calibration and constant errors. Empty if this program cannot read the result's study.
 std::string study_lines(const StoredResult& result, std::size_t width) {
   const std::optional<Study> study = study_in(result, registry());
   if (!study) return {};
-  std::vector<std::string> lines = build_model(study->mechanism)->remarks();
+  const std::unique_ptr<Model> model = build_model(study->mechanism);
+  std::vector<std::string> lines = model->remarks();
+  for (const std::string& doubt : mechanism_doubts(*model)) lines.push_back("warning: " + doubt);
   if (!kind_of(result).report.words(result).from_tables) {
     lines.push_back(calibration_text(*study));
     lines.push_back(held_errors_text(*study));

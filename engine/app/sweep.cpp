@@ -106,6 +106,23 @@ std::optional<std::vector<SweptDesign>> designs_of(const SweepOptions& options,
   return designs;
 }
 
+/// Warns of what looks like a mistake in designs. A warning that holds for several designs is printed once.
+void warn_of_designs(std::span<const SweptDesign> designs) {
+  constexpr std::size_t kMost = 3;
+  std::vector<std::string> said;
+  for (const SweptDesign& design : designs) {
+    const std::unique_ptr<Model> model = build_model(design.study.mechanism);
+    for (const std::string& doubt : all_doubts(design.study, *model, design.poses)) {
+      if (std::ranges::find(said, doubt) != said.end()) continue;
+      said.push_back(doubt);
+      if (said.size() <= kMost) say(Message::warning, fmt::format("with {}: {}", words_of(design.given), doubt));
+    }
+  }
+  if (said.size() <= kMost) return;
+  say(Message::warning, fmt::format("{} more warnings are of other designs; 'poesy check' prints those of one study",
+                                    said.size() - kMost));
+}
+
 /// The identity of a sweep, by which a checkpoint is recognised: that of the first design, but with the studies and the
 /// poses of all designs.
 CheckpointIdentity identity_of(std::span<const SweptDesign> designs) {
@@ -210,6 +227,7 @@ int sweep(const SweepOptions& options) {
     if (stop) return interrupted(resumable);
   }
   resumable.start(identity_of(*designs), options.quiet);
+  warn_of_designs(*designs);
   const auto found = run_with_progress(options, keys, *designs, path,
                                        {.threads = threads,
                                         .stop = &stop,

@@ -1,8 +1,11 @@
 #include "engine/kinds/result_file.h"
 
+#include <optional>
+
 #include "engine/app/command_line.h"
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
+#include "engine/kinds/study_file.h"
 #include "models/registry.h"
 
 namespace poesy::app {
@@ -10,6 +13,9 @@ namespace {
 
 int tolerances(const TolerancesOptions& options) {
   const StoredResult result = read_result_with_warning(options.result);
+  if (const std::optional<Study> study = study_in(result, registry())) {
+    warn_of_mechanism(*build_model(study->mechanism));
+  }
   print(set_tolerances(result, options, registry(), output_width()));
   return kDone;
 }

@@ -48,6 +48,7 @@ class ForwardingModel : public Model {
   std::vector<std::string> remarks() const override { return model_->remarks(); }
   std::optional<Sketch> sketch(std::span<const double> pose) const override { return model_->sketch(pose); }
   std::vector<std::string> unusual_geometry() const override { return model_->unusual_geometry(); }
+  std::vector<std::string> unusual_errors() const override { return model_->unusual_errors(); }
 
   const Model& behind() const { return *model_; }  ///< The wrapped model.
   /// Wraps an evaluator of the wrapped model, so that it also computes the responses that this model adds. Returns null

@@ -344,6 +344,10 @@ class Model {
   /// message, such as "the platform (l_A = 800 mm) is larger than the base (l_B = 200 mm)". None by default.
   virtual std::vector<std::string> unusual_geometry() const { return {}; }
 
+  /// Properties of the errors and of the drawing's zones that are possible but unusual, as clauses like those of
+  /// unusual_geometry(). None by default.
+  virtual std::vector<std::string> unusual_errors() const { return {}; }
+
  protected:
   Model() = default;
   /// For derived classes that copy themselves.

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "engine/report/tables.h"
+#include "engine/study/mechanism_doubts.h"
 
 namespace poesy {
 namespace {
@@ -44,8 +45,9 @@ std::string mechanism_text(const CatalogEntry& entry) {
   const std::unique_ptr<Model> model_of_defaults = entry.build(geometry, 0);
   for (const std::string& line : model_of_defaults->mobility()) text += "  " + line + "\n";
   for (const std::string& remark : model_of_defaults->remarks()) text += "  " + remark + "\n";
-  for (const std::string& unusual : model_of_defaults->unusual_geometry()) {
-    text += "  hint: " + unusual + "; is that meant?\n";
+  for (const std::string& doubt : mechanism_doubts(*model_of_defaults)) text += "  hint: " + doubt + "\n";
+  for (const std::string& unusual : model_of_defaults->unusual_errors()) {
+    text += "  hint: " + asked_back(unusual) + "\n";
   }
   return text;
 }

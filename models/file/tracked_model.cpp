@@ -91,8 +91,10 @@ std::vector<std::string> TrackedModel::mobility() const {
 
 std::vector<std::string> TrackedModel::remarks() const { return rounding_remarks(mechanism_, mismatch_); }
 
-std::vector<std::string> TrackedModel::unusual_geometry() const {
-  std::vector<std::string> list = home_outside(mechanism_);
+std::vector<std::string> TrackedModel::unusual_geometry() const { return home_outside(mechanism_); }
+
+std::vector<std::string> TrackedModel::unusual_errors() const {
+  std::vector<std::string> list;
   for (const auto& find : {unlike_limbs, doubtful_zones, uncovered_directions}) {
     for (std::string& found : find(mechanism_)) list.push_back(std::move(found));
   }

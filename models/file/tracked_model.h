@@ -26,6 +26,7 @@ class TrackedModel : public Model {
   std::vector<std::string> mobility() const override;
   std::vector<std::string> remarks() const override;
   std::vector<std::string> unusual_geometry() const override;
+  std::vector<std::string> unusual_errors() const override;
   /// The rotation base_R_platform of perfect limbs at a reachable pose (SI), or at home if the pose is empty.
   virtual lie::Matrix3<double> orientation(std::span<const double> pose) const = 0;
   /// The bound of an error: for a length, the shortest link of the error's limb, or the mechanism's reach if the limb

@@ -266,7 +266,10 @@ TEST_P(EveryMechanism, BoundsErrorsAboveZero) {
   }
 }
 
-TEST_P(EveryMechanism, FindsNothingUnusual) { EXPECT_TRUE(model_->unusual_geometry().empty()); }
+TEST_P(EveryMechanism, FindsNothingUnusual) {
+  EXPECT_TRUE(model_->unusual_geometry().empty());
+  EXPECT_TRUE(model_->unusual_errors().empty());
+}
 
 /// Parameters of the platform and of the base, 800 mm against 200 mm.
 TEST(UnusualGeometry, IsAPlatformLargerThanItsBase) {

@@ -1,7 +1,7 @@
 """What the program says of a study apart from its results: what it holds constant, what looks like a slip, and what may
 help where samples did not converge."""
 
-from poesy_program import STUDY, ProgramTest, main
+from poesy_program import GALLERY, STUDY, ProgramTest, main
 
 HELD = "held constant: 30 errors of set 'benign' at 1 mm and 1 deg"
 CASES = """\
@@ -16,9 +16,31 @@ kind = "evaluate"
 background = { factors = "benign", linear = "20 um", angular = "1 arcmin" }
 cases = [{ errors = { delta_1_1_y = "1 mm" } }]
 """
+RPS = """\
+format = "poesy-study"
+version = 1
+mechanism = { file = "rps.toml" }
+poses = { count = 1 }
+[errors]
+linear = { distribution = "normal", sigma = "0.1 mm" }
+[analysis]
+kind = "sensitivity"
+factors = ["delta_x_1_0"]
+samples = 20
+"""
 
 
 class StudyNotes(ProgramTest):
+    def write_rps(self, study=RPS, of_file=("", "")):
+        self.write("rps.toml", (GALLERY / "3-rps/3-rps.toml").read_text().replace(*of_file))
+        self.write("study.toml", study)
+
+    def errors_of(self, *arguments):
+        """What a command that succeeds says on stderr."""
+        done = self.poesy(*arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stderr.decode()
+
     def test_what_is_held_is_said_everywhere(self):
         self.write("study.toml", STUDY.replace("samples = 1500", "samples = 20"))
         self.assertIn(f"\n# {HELD}\n", self.succeeds("check", "study.toml"))
@@ -55,6 +77,24 @@ class StudyNotes(ProgramTest):
         self.assertIn(hint, self.succeeds("check", "study.toml"))
         self.write("study.toml", STUDY)
         self.assertNotIn("# hint", self.succeeds("check", "study.toml"))
+
+    def test_a_workspace_without_home(self):
+        """Every command that solves the mechanism, or shows what was solved, asks about it."""
+        self.write_rps(of_file=('z = ["500 mm", "700 mm"]', 'z = ["650 mm", "750 mm"]'))
+        asked = "home has z = 600 mm, outside the workspace from 650 mm to 750 mm (coordinates are absolute); is that meant?"
+        self.assertIn(f"# hint: {asked}\n", self.succeeds("check", "study.toml"))
+        self.assertEqual(self.errors_of("run", "study.toml", "-o", "r.h5", "--quiet"), f"poesy: warning: {asked}\n")
+        swept = self.errors_of("sweep", "study.toml", "--set", "errors.linear.sigma=0.1,0.2mm", "-o", "s.h5", "--quiet")
+        self.assertEqual(swept.count(asked), 1, swept)
+        self.assertIn(asked, self.errors_of("tolerances", "r.h5", "--response", "position", "-d", "t"))
+        self.assertIn(f"warning: {asked}", self.succeeds("show", "r.h5"))
+        self.succeeds("report", "r.h5")
+        self.assertIn(asked, (self.folder / "r.html").read_text())
+
+    def test_a_workspace_with_home(self):
+        self.write_rps()
+        self.assertEqual(self.errors_of("run", "study.toml", "-o", "r.h5", "--quiet"), "")
+        self.assertNotIn("warning", self.succeeds("show", "r.h5"))
 
     def warning(self, study):
         """What is said on stderr of samples that did not converge."""

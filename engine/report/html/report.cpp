@@ -9,6 +9,7 @@
 #include "engine/report/display.h"
 #include "engine/report/html/forces.h"
 #include "engine/report/report_kind.h"
+#include "engine/study/mechanism_doubts.h"
 
 namespace poesy {
 namespace {
@@ -31,6 +32,11 @@ void warn_of_changes(const ReportedResult& result, Warnings& list) {
         "commit alone does not give the program again.",
         result.stored.git_commit));
   }
+}
+
+void warn_of_mechanism(const ReportedResult& result, Warnings& list) {
+  if (result.model == nullptr) return;
+  for (const std::string& doubt : mechanism_doubts(*result.model)) list.push_back("The mechanism: " + doubt);
 }
 
 void warn_of_unsolved(const StoredResult& result, const SolveTally& tally, Warnings& list) {
@@ -93,6 +99,7 @@ std::vector<std::string> warnings(const ReportKind& kind, const ReportedResult& 
   const SolveTally tally = kind.tally(stored);
   Warnings list;
   warn_of_changes(result, list);
+  warn_of_mechanism(result, list);
   warn_of_unsolved(stored, tally, list);
   warn_of_unsolved_poses(tally, list);
   warn_of_calibration(stored, list);

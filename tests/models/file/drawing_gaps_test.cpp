@@ -117,7 +117,7 @@ TEST(DrawingGaps, NameZonesThatSayLittle) {
             (Clauses{"perpendicularity of rail has no datums",
                      "perpendicularity of rail is 0.0355 mm, and its position allows no more than 0.03536 mm "
                      "anyway"}));
-  EXPECT_EQ(build(catalog_entry(text_of(kName), "m.toml"))->unusual_geometry(), uncovered());
+  EXPECT_EQ(build(catalog_entry(text_of(kName), "m.toml"))->unusual_errors(), uncovered());
 }
 
 }  // namespace

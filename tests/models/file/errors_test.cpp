@@ -302,7 +302,7 @@ TEST(LimbsOfErrors, EachSaysWhich) {
       "joint C (2 of 2) against joint C (1 of 2)";
   const CatalogEntry unlike = catalog_entry(tricept() + each, "m.toml");
   EXPECT_NE(unlike.description.structure.find("  " + said + ".\n"), std::string::npos) << unlike.description.structure;
-  const std::vector<std::string> hints = build(unlike)->unusual_geometry();
+  const std::vector<std::string> hints = build(unlike)->unusual_errors();
   ASSERT_EQ(hints.size(), 1u);
   EXPECT_EQ(hints.front(), said + ", and these limbs have other joints than each other");
   const CatalogEntry alike = catalog_entry(text_of("rrr3"), "m.toml");
@@ -310,7 +310,7 @@ TEST(LimbsOfErrors, EachSaysWhich) {
                 "  error l with limb = \"each\" is in limbs 1, 2 and 3, joint B against joint A.\n"),
             std::string::npos)
       << alike.description.structure;
-  EXPECT_TRUE(build(alike)->unusual_geometry().empty());
+  EXPECT_TRUE(build(alike)->unusual_errors().empty());
 }
 
 // ---- sizes
