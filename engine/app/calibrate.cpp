@@ -79,7 +79,7 @@ SelectedPoses measured_poses(const std::string& path, const MachineFile& file, c
   selection.from_file = file.poses;
   selection.place = {path, 2, 1};
   SelectedPoses poses = select_poses(selection, model);
-  const std::string doubt = bare_pose_text(path, file.poses, poses.poses, model.description());
+  const std::string doubt = outside_pose_text(path, file.poses, poses.poses, model.description());
   if (!doubt.empty()) say(Message::warning, doubt);
   return poses;
 }

@@ -77,7 +77,7 @@ SelectedPoses read_reachable_poses(const std::string& path, const Model& model) 
   selection.place = {path, 2, 0};
   SelectedPoses poses = select_poses(selection, model);
   warn_of_singular_poses(path, poses, max_condition);
-  warn_of(bare_pose_text(path, selection.from_file, poses.poses, model.description()));
+  warn_of(outside_pose_text(path, selection.from_file, poses.poses, model.description()));
   return poses;
 }
 

@@ -64,21 +64,23 @@ std::optional<double> departure(const MachineValue& value, const PoseTable& pose
          poses.points[PoseIndex(value.row)][static_cast<std::size_t>(own - model.pose_coordinates.begin())];
 }
 
+/// The column without a unit on which this coordinate of a pose depends; empty if there is none. If the table has
+/// columns of a chart, a coordinate of the pose depends on all of them.
+std::string bare_column_of(const PoseTable& table, const std::string& coordinate) {
+  if (table.chart) return table.bare.empty() ? std::string() : table.bare.front();
+  return std::ranges::find(table.bare, coordinate) == table.bare.end() ? std::string() : coordinate;
+}
+
 double largest_magnitude(std::span<const double> values) {
   return *std::ranges::max_element(values, {}, [](double value) { return std::abs(value); });
 }
 
 }  // namespace
 
-std::string bare_pose_text(std::string_view file, const PoseTable& table, const PoseSet& poses,
-                           const ModelDescription& model) {
-  if (table.bare.empty()) return {};
+std::string outside_pose_text(std::string_view file, const PoseTable& table, const PoseSet& poses,
+                              const ModelDescription& model) {
   for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
     const PoseCoordinate& coordinate = model.pose_coordinates[c];
-    // If the table has columns of a chart, a coordinate of the pose depends on all of them. So the coordinate is
-    // checked if any column has no unit.
-    const auto own = std::ranges::find(table.bare, coordinate.name);
-    if (!table.chart && own == table.bare.end()) continue;
     const double lower = model.pose_lower[c];
     const double upper = model.pose_upper[c];
     const double margin = kRounding * (upper - lower);
@@ -86,13 +88,17 @@ std::string bare_pose_text(std::string_view file, const PoseTable& table, const 
     const auto outside =
         std::ranges::find_if(values, [&](double value) { return value < lower - margin || value > upper + margin; });
     if (outside == values.end()) continue;
+    const std::string bare = bare_column_of(table, coordinate.name);
+    const auto text = [&](double si) {
+      const Quantity value{si, coordinate.dimension};
+      return bare.empty() ? readable_text(value, kDigits) : to_text(value);
+    };
+    const std::string found =
+        fmt::format("pose {} has {} = {}, outside the workspace from {} to {}", outside - values.begin() + 1,
+                    coordinate.name, text(*outside), text(lower), text(upper));
+    if (bare.empty()) return fmt::format("{}: {}; look at its sign and unit", printable(file), found);
     const auto& columns = coordinates(model, table.chart);
-    const std::string& column = table.chart ? table.bare.front() : coordinate.name;
-    const Dimension dimension = std::ranges::find(columns, column, &PoseCoordinate::name)->dimension;
-    const auto text = [&](double value) { return to_text({value, coordinate.dimension}); };
-    return line(file, column, dimension,
-                fmt::format("pose {} has {} = {}, outside the workspace from {} to {}", outside - values.begin() + 1,
-                            coordinate.name, text(*outside), text(lower), text(upper)));
+    return line(file, bare, std::ranges::find(columns, bare, &PoseCoordinate::name)->dimension, found);
   }
   return {};
 }
@@ -101,10 +107,10 @@ std::vector<std::string> doubts_of(const Study& study, const SelectedPoses& pose
   std::vector<std::string> doubts = study.doubts;
   std::string of_poses;
   if (study.poses.select == PoseSelection::Select::file) {
-    of_poses = bare_pose_text(study.poses.file, study.poses.from_file, poses.poses, study.model());
+    of_poses = outside_pose_text(study.poses.file, study.poses.from_file, poses.poses, study.model());
   } else if (study.poses.trajectory && !study.poses.trajectory->curve) {
     const Trajectory& trajectory = *study.poses.trajectory;
-    of_poses = bare_pose_text(trajectory.file, trajectory.from_file.table, poses.poses, study.model());
+    of_poses = outside_pose_text(trajectory.file, trajectory.from_file.table, poses.poses, study.model());
   }
   if (!of_poses.empty()) doubts.push_back(std::move(of_poses));
   return doubts;

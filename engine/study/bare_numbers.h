@@ -13,13 +13,13 @@
 /// returns an empty text.
 namespace poesy {
 
-/// Warns of poses outside the mechanism's workspace. poses: the poses of the table, or poses that are interpolated
-/// between the points of the table.
-std::string bare_pose_text(std::string_view file, const PoseTable& table, const PoseSet& poses,
-                           const ModelDescription& model);
+/// Warns of poses outside the mechanism's workspace, also if the table states units: a sign may be lost. poses: the
+/// poses of the table, or poses that are interpolated between the points of the table.
+std::string outside_pose_text(std::string_view file, const PoseTable& table, const PoseSet& poses,
+                              const ModelDescription& model);
 
-/// All warnings about numbers without a unit in the tables that the study names, one line for each warning. poses: the
-/// poses that the study selects.
+/// All warnings about numbers in the tables that the study names, one line for each warning. poses: the poses that the
+/// study selects.
 std::vector<std::string> doubts_of(const Study& study, const SelectedPoses& poses);
 
 /// Warns of an error that is more than ten times as large as the size that the study gives this error (error_size()).

@@ -96,6 +96,14 @@ class StudyNotes(ProgramTest):
         self.assertEqual(self.errors_of("run", "study.toml", "-o", "r.h5", "--quiet"), "")
         self.assertNotIn("warning", self.succeeds("show", "r.h5"))
 
+    def test_poses_with_units_outside_the_workspace(self):
+        self.write_rps(RPS.replace("count = 1", 'select = "file", file = "p.csv"'))
+        said = "p.csv: pose 2 has z = 900 mm, outside the workspace from 500 mm to 700 mm; look at its sign and unit"
+        self.write("p.csv", "rx [deg],ry [deg],z [mm]\n5,5,600\n5,5,900\n")
+        self.assertEqual(self.errors_of("run", "study.toml", "-o", "r.h5", "--quiet"), f"poesy: warning: {said}\n")
+        self.write("p.csv", "rx [deg],ry [deg],z [mm]\n5,5,600\n5,5,700\n")
+        self.assertEqual(self.errors_of("run", "study.toml", "-o", "r.h5", "--quiet"), "")
+
     def warning(self, study):
         """What is said on stderr of samples that did not converge."""
         self.write("study.toml", study)

@@ -19,7 +19,7 @@ std::string pose_text(std::string_view table) {
   selection.select = PoseSelection::Select::file;
   selection.from_file = read_poses(folder.write("p.csv", table), kModel.description());
   selection.place = {"p.csv", 2, 1};
-  return bare_pose_text("p.csv", selection.from_file, select_poses(selection, kModel).poses, kModel.description());
+  return outside_pose_text("p.csv", selection.from_file, select_poses(selection, kModel).poses, kModel.description());
 }
 
 /// The workspace of z is from -0.3 m to -0.18 m, that of beta from -0.5 rad to 0.5 rad.
@@ -33,7 +33,12 @@ TEST(BareNumbers, OfPosesOutsideTheWorkspace) {
       "p.csv: beta has no unit, so its numbers are in rad: pose 2 has beta = -1.25 rad, outside the workspace from "
       "-0.5 rad to 0.5 rad; if they are not, name their unit in the first line, e.g. 'beta [deg]'");
   EXPECT_EQ(pose_text("z,beta,gamma\n-0.3,0.5,-0.6\n-0.18,-0.5,0.6\n"), "") << "the ends are inside";
-  EXPECT_EQ(pose_text("z [m],beta [rad],gamma\n-250,-1.25,0.1\n"), "") << "units are named";
+}
+
+TEST(BareNumbers, OfPosesWithUnits) {
+  EXPECT_EQ(pose_text("z [mm],beta [deg],gamma [rad]\n-200,0,0\n250,0,0\n"),
+            "p.csv: pose 2 has z = 250 mm, outside the workspace from -300 mm to -180 mm; look at its sign and unit");
+  EXPECT_EQ(pose_text("z [mm],beta [deg],gamma [rad]\n-200,20,0.1\n"), "");
 }
 
 TEST(BareNumbers, OfOtherCoordinatesOfPoses) {
@@ -42,7 +47,8 @@ TEST(BareNumbers, OfOtherCoordinatesOfPoses) {
       "p.csv: depth has no unit, so its numbers are in m: pose 1 has z = -200 m, outside the workspace from -0.3 m "
       "to -0.18 m; if they are not, name their unit in the first line, e.g. 'depth [mm]'");
   EXPECT_EQ(pose_text("depth,sum,difference\n0.2,0,0\n"), "");
-  EXPECT_EQ(pose_text("depth [mm],sum [rad],difference [rad]\n2000,0,0\n"), "");
+  EXPECT_EQ(pose_text("depth [mm],sum [rad],difference [rad]\n2000,0,0\n"),
+            "p.csv: pose 1 has z = -2000 mm, outside the workspace from -300 mm to -180 mm; look at its sign and unit");
 }
 
 std::string study_text(std::string_view errors, std::string_view poses = "{ count = 3 }") {
