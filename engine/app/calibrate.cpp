@@ -195,7 +195,7 @@ Study study_to_calibrate(const std::string& path) {
 int calibrate_machine(const CalibrateOptions& options) {
   const Study study = study_to_calibrate(options.study);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
-  warn_of_mechanism(*model);
+  warn_of_mechanism(study, *model);
   const MachineFile file = read_machine_file(options.measured, model->description());
   const SelectedPoses measured = measured_poses(options.measured, file, *model);
   const SelectedPoses predicted = selected(study.poses, options.study, *model).value_or(without_repetition(measured));

@@ -85,7 +85,7 @@ SelectedPoses read_reachable_poses(const std::string& path, const Model& model) 
 /// user stopped the search for them.
 std::optional<SelectedPoses> poses_of(const EvaluateOptions& options, const Study& study, const Model& model) {
   if (!options.poses.empty()) {
-    warn_of_mechanism(model);
+    warn_of_mechanism(study, model);
     return read_reachable_poses(options.poses, model);
   }
   auto poses = find_poses(study, model, {.quiet = options.quiet, .stop = &catch_interrupts()});

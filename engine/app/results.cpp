@@ -332,12 +332,12 @@ FileError too_little_memory(const std::string& path, const std::string& work, co
           "do it where there is more, raise the limit (ulimit -v), or ask for fewer poses or errors"};
 }
 
-void warn_of_mechanism(const Model& model) {
-  for (const std::string& doubt : mechanism_doubts(model)) say(Message::warning, doubt);
+void warn_of_mechanism(const Study& study, const Model& model) {
+  for (const std::string& doubt : mechanism_doubts(study.mechanism, model)) say(Message::warning, doubt);
 }
 
 std::vector<std::string> all_doubts(const Study& study, const Model& model, const SelectedPoses& poses) {
-  std::vector<std::string> list = mechanism_doubts(model);
+  std::vector<std::string> list = mechanism_doubts(study.mechanism, model);
   std::ranges::copy(doubts_of(study, poses), std::back_inserter(list));
   return list;
 }

@@ -95,7 +95,7 @@ std::string memory_text(std::size_t bytes);
 FileError too_little_memory(const std::string& path, const std::string& work, const std::string& needed);
 
 /// Warns on stderr of what looks like a mistake in the mechanism (mechanism_doubts()).
-void warn_of_mechanism(const Model& model);
+void warn_of_mechanism(const Study& study, const Model& model);
 
 /// What looks like a mistake in the mechanism, and in the numbers of the study's tables (doubts_of()), one line each.
 std::vector<std::string> all_doubts(const Study& study, const Model& model, const SelectedPoses& poses);

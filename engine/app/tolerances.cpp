@@ -14,7 +14,7 @@ namespace {
 int tolerances(const TolerancesOptions& options) {
   const StoredResult result = read_result_with_warning(options.result);
   if (const std::optional<Study> study = study_in(result, registry())) {
-    warn_of_mechanism(*build_model(study->mechanism));
+    warn_of_mechanism(*study, *build_model(study->mechanism));
   }
   print(set_tolerances(result, options, registry(), output_width()));
   return kDone;

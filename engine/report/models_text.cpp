@@ -45,9 +45,8 @@ std::string mechanism_text(const CatalogEntry& entry) {
   const std::unique_ptr<Model> model_of_defaults = entry.build(geometry, 0);
   for (const std::string& line : model_of_defaults->mobility()) text += "  " + line + "\n";
   for (const std::string& remark : model_of_defaults->remarks()) text += "  " + remark + "\n";
-  for (const std::string& doubt : mechanism_doubts(*model_of_defaults)) text += "  hint: " + doubt + "\n";
-  for (const std::string& unusual : model_of_defaults->unusual_errors()) {
-    text += "  hint: " + asked_back(unusual) + "\n";
+  for (const auto& list : {model_of_defaults->unusual_geometry(), model_of_defaults->unusual_errors()}) {
+    for (const std::string& unusual : list) text += "  hint: " + asked_back(unusual) + "\n";
   }
   return text;
 }

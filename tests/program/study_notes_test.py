@@ -96,6 +96,21 @@ class StudyNotes(ProgramTest):
         self.assertEqual(self.errors_of("run", "study.toml", "-o", "r.h5", "--quiet"), "")
         self.assertNotIn("warning", self.succeeds("show", "r.h5"))
 
+    def test_geometry_far_from_the_files(self):
+        for given, asked in (("-250 mm", "a = -250 mm"), ("2.6 m", "a = 2600 mm"), ("24 mm", "a = 24 mm")):
+            self.write_rps(RPS.replace("}", f', geometry = {{ a = "{given}" }} }}', 1))
+            asked += "; the mechanism's file has 250 mm; is that meant?\n"
+            self.assertIn(f"# hint: {asked}", self.succeeds("check", "study.toml"))
+            self.assertIn(f"poesy: warning: {asked}", self.errors_of("run", "study.toml", "-o", "r.h5", "--quiet"))
+        self.write_rps()
+        swept = self.errors_of("sweep", "study.toml", "--set", "geometry.a=250,-250mm", "-o", "s.h5", "--quiet")
+        self.assertEqual(swept.count("poesy: warning: with mechanism.geometry.a = -250mm: a = -250 mm;"), 1, swept)
+
+    def test_geometry_like_the_files_or_zero(self):
+        for given in ("300 mm", "26 mm"):
+            self.write_rps(RPS.replace("}", f', geometry = {{ a = "{given}" }} }}', 1))
+            self.assertNotIn("that meant", self.succeeds("check", "study.toml"))
+
     def test_poses_with_units_outside_the_workspace(self):
         self.write_rps(RPS.replace("count = 1", 'select = "file", file = "p.csv"'))
         said = "p.csv: pose 2 has z = 900 mm, outside the workspace from 500 mm to 700 mm; look at its sign and unit"

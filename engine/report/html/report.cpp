@@ -35,8 +35,9 @@ void warn_of_changes(const ReportedResult& result, Warnings& list) {
 }
 
 void warn_of_mechanism(const ReportedResult& result, Warnings& list) {
-  if (result.model == nullptr) return;
-  for (const std::string& doubt : mechanism_doubts(*result.model)) list.push_back("The mechanism: " + doubt);
+  if (result.model == nullptr || result.study == nullptr) return;
+  for (const std::string& doubt : mechanism_doubts(result.study->mechanism, *result.model))
+    list.push_back("The mechanism: " + doubt);
 }
 
 void warn_of_unsolved(const StoredResult& result, const SolveTally& tally, Warnings& list) {
