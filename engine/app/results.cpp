@@ -32,6 +32,7 @@
 #include "engine/study/calibration.h"
 #include "engine/study/limit_keys.h"
 #include "engine/study/mechanism_doubts.h"
+#include "engine/study/outside_poses.h"
 #include "engine/study/study_kind.h"
 #include "models/registry.h"
 
@@ -53,9 +54,12 @@ std::string cpu_name() {
   return "unknown";
 }
 
-/// Advice on options with which fewer samples may fail. It mentions [solver] method only for the metric "published" and
-/// for mechanisms without a metric, because the method matters only for these.
-std::string advice(const Study& study, const SolveCounts& solves) {
+/// Advice with which fewer samples may fail: on poses that are far outside the workspace, otherwise on options. It
+/// names the solver's method only for the metric "published" and for mechanisms without a metric, because the method
+/// matters only for these.
+std::string advice(const Study& study, const PoseSet& poses, const SolveCounts& solves) {
+  const std::string far = far_outside_clause(poses, study.model());
+  if (!far.empty()) return "look at the units of the poses: " + far;
   if (mostly_impossible(solves)) return std::string(kAssemblyAdvice);
   const std::string& metric = study.model().metric;
   const bool newton_may_help = metric.empty() || metric == "published";
@@ -65,10 +69,10 @@ std::string advice(const Study& study, const SolveCounts& solves) {
   return fmt::format("study smaller errors, or raise solver.max_iterations above {}", study.solver.max_iterations);
 }
 
-std::string warning_text(const Study& study, const SolveCounts& solves) {
+std::string warning_text(const Study& study, const PoseSet& poses, const SolveCounts& solves) {
   const double share = share_not_converged(solves);
   const bool many = share > kManyNotConverged;
-  const std::string advised = advice(study, solves);
+  const std::string advised = advice(study, poses, solves);
   const std::uint64_t impossible = solves.not_assembled();
   if (impossible == 0) {
     return fmt::format("{:.3g} % of the samples did not converge and are left out; {}{}", 100.0 * share,
@@ -86,13 +90,13 @@ std::string warning_text(const Study& study, const SolveCounts& solves) {
       advised);
 }
 
-ExitCode judge_failures(const Study& study, const SolveCounts& solves, const std::string& study_path,
-                        const std::string& remedy) {
+ExitCode judge_failures(const Study& study, const PoseSet& poses, const SolveCounts& solves,
+                        const std::string& study_path, const std::string& remedy) {
   const std::uint64_t failed = solves.not_converged();
   if (failed == 0) return kDone;
   const double share = share_not_converged(solves);
   if (share > unremarkable_failure_share(study.max_not_converged) && study.not_converged == NotConverged::exclude) {
-    say(Message::warning, warning_text(study, solves));
+    say(Message::warning, warning_text(study, poses, solves));
   }
   if (share <= study.max_not_converged) return kDone;
   say(Message::error,
@@ -213,7 +217,7 @@ std::vector<std::string> inputs_of(const std::string& study_path, const Study& s
 ExitCode judge(const Study& study, const SolveCounts& solves, const StoredResult& result, const std::string& study_path,
                const Remedies& remedies) {
   const ExitCode limits = judge_limits(study, result, study_path, remedies.limits);
-  const ExitCode failures = judge_failures(study, solves, study_path, remedies.failures);
+  const ExitCode failures = judge_failures(study, result.poses, solves, study_path, remedies.failures);
   return failures != kDone ? failures : limits;
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "engine/base/text.h"
+#include "engine/study/outside_poses.h"
 
 namespace poesy {
 namespace {
@@ -79,28 +80,17 @@ double largest_magnitude(std::span<const double> values) {
 
 std::string outside_pose_text(std::string_view file, const PoseTable& table, const PoseSet& poses,
                               const ModelDescription& model) {
-  for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
-    const PoseCoordinate& coordinate = model.pose_coordinates[c];
-    const double lower = model.pose_lower[c];
-    const double upper = model.pose_upper[c];
-    const double margin = kRounding * (upper - lower);
-    const std::vector<double> values = poses.column(c);
-    const auto outside =
-        std::ranges::find_if(values, [&](double value) { return value < lower - margin || value > upper + margin; });
-    if (outside == values.end()) continue;
-    const std::string bare = bare_column_of(table, coordinate.name);
-    const auto text = [&](double si) {
-      const Quantity value{si, coordinate.dimension};
-      return bare.empty() ? readable_text(value, kDigits) : to_text(value);
-    };
-    const std::string found =
-        fmt::format("pose {} has {} = {}, outside the workspace from {} to {}", outside - values.begin() + 1,
-                    coordinate.name, text(*outside), text(lower), text(upper));
-    if (bare.empty()) return fmt::format("{}: {}; look at its sign and unit", printable(file), found);
-    const auto& columns = coordinates(model, table.chart);
-    return line(file, bare, std::ranges::find(columns, bare, &PoseCoordinate::name)->dimension, found);
+  const auto outside = outside_pose(poses, model, kRounding);
+  if (!outside) return {};
+  const std::string bare = bare_column_of(table, model.pose_coordinates[outside->coordinate].name);
+  if (bare.empty()) {
+    const auto text = [](Quantity value) { return readable_text(value, kDigits); };
+    return fmt::format("{}: {}; look at its sign and unit", printable(file),
+                       outside_clause(*outside, poses, model, text));
   }
-  return {};
+  const auto& columns = coordinates(model, table.chart);
+  const Dimension dimension = std::ranges::find(columns, bare, &PoseCoordinate::name)->dimension;
+  return line(file, bare, dimension, outside_clause(*outside, poses, model, to_text));
 }
 
 std::vector<std::string> doubts_of(const Study& study, const SelectedPoses& poses) {

@@ -2,6 +2,7 @@
 
 import json
 import unittest
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -117,7 +118,20 @@ class Evaluate(FolderTest):
         with self.assertWarnsRegex(poesy.PoesyWarning, "100 % of the samples did not converge"):
             found = poesy.evaluate("2upr-rpu", self.poses, self.errors * 10, solver=HOPELESS)
         self.assertFalse(found.converged.any())
+        for values in found.values():
+            self.assertTrue(np.isnan(values).all())
         self.assertEqual({found.status_names[code] for code in found.status.ravel()}, {"iteration_cap"})
+
+    def test_poses_in_the_wrong_unit(self):
+        """Millimetres for metres: a warning names the pose, and the advice is about it."""
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            found = poesy.evaluate(RPS3, [[0, 0, 600]], np.zeros(108))
+        said = [str(one.message) for one in caught if one.category is poesy.PoesyWarning]
+        self.assertIn("pose 1 has z = 600000 mm, outside the workspace from 500 mm to 700 mm", said[0])
+        for words in said[1:]:
+            self.assertIn("look at the units of the poses", words)
+        self.assertEqual(np.isnan(found["position"]).all(), not found.converged.all())
 
     def test_what_is_refused(self):
         cases = (

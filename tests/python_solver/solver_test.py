@@ -17,6 +17,7 @@ import threading
 import time
 import tracemalloc
 import unittest
+import warnings
 from concurrent.futures import ThreadPoolExecutor
 
 import h5py
@@ -41,6 +42,33 @@ def sampled(evaluator, shape, scale=1.0, seed=1):
 
 def bits(array):
     return np.ascontiguousarray(array).tobytes()
+
+
+class Warnings(unittest.TestCase):
+    """Numbers in mm or degrees are asked about, once."""
+
+    def said(self, act):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            act()
+        self.assertTrue(all(one.category is poesy_solver.PoesyWarning for one in caught), caught)
+        return [str(one.message) for one in caught]
+
+    def test_poses_in_mm(self):
+        evaluator = poesy_solver.Evaluator(GALLERY / "3-rps" / "3-rps.toml")
+        self.assertEqual(self.said(lambda: evaluator.at([0.0, 0.0, 0.75])), [], "just outside is no slip")
+        for times, act in ((1, evaluator.at), (0, evaluator.at)):
+            self.assertEqual(len(self.said(lambda: act([0.0, 0.0, 600.0]))), times)
+        other = poesy_solver.Evaluator(GALLERY / "3-rps" / "3-rps.toml")
+        said = self.said(lambda: other([[0.0, 0.0, 0.6], [0.0, 0.0, 600.0]], np.zeros(len(other.errors))))
+        self.assertEqual(said, ["pose 2 has z = 600000 mm, outside the workspace from 500 mm to 700 mm; poses are in SI: metres and "
+                                "radians"])
+
+    def test_geometry_in_mm(self):
+        path = GALLERY / "3-rps" / "3-rps.toml"
+        self.assertEqual(self.said(lambda: poesy_solver.Evaluator(path, geometry={"a": 0.3})), [])
+        said = self.said(lambda: poesy_solver.Evaluator(path, geometry={"a": 2.6}))
+        self.assertEqual(said, ["a = 2600 mm; the mechanism's file has 250 mm; is that meant?"])
 
 
 class Numbers(unittest.TestCase):

@@ -19,10 +19,12 @@ from ._study import write_study
 
 Floats = npt.NDArray[np.float64]
 
+_SOLUTIONS = ("converged", "stagnated")  # names of statuses that count as solved
+
 
 class Evaluation(dict[str, Floats]):
     """Responses by name, each [M x N] in SI (m, rad), for pose m and row n of the errors. [M] if each pose has its own
-    row.
+    row. NaN for a solve that did not end in a solution.
 
     Attributes
     ----------
@@ -31,12 +33,12 @@ class Evaluation(dict[str, Floats]):
     status_names : tuple of str
         Names of the statuses. The last one, not_assembled, is present only if a solve ended with it.
     converged : ndarray of bool
-        Whether `status` is 0. Samples with status 1 (stagnated) are solved too, as exactly as the arithmetic allows.
-        The responses of all other samples mean little, and the program leaves them out of its statistics.
+        Whether `status` is 0, converged. Solves that stagnated at rounding level are solutions, too. All others have NaN.
     units : dict of str
         SI unit of each response.
     details : dict of ndarray [M x N x C] or [M x C]
-        Further outputs of the mechanism, for instance deviations between limbs as screws.
+        Further outputs of the mechanism, for instance deviations between limbs as screws; those of the last iterate where
+        a solve did not end in a solution.
     joints : ndarray [M x J]
         Displacements of the joints at each pose without errors, m or rad.
     joint_names : tuple of str
@@ -50,9 +52,10 @@ class Evaluation(dict[str, Floats]):
             data = found[name].transpose("pose", "sample", ...)
             return (data.isel(sample=0) if paired else data).values
 
-        super().__init__({name: values(name) for name in self.units})
         self.status: npt.NDArray[np.uint8] = values("status")
         self.status_names = tuple(found["status"].attrs["status_names"])
+        is_solution = np.isin(self.status, [code for code, name in enumerate(self.status_names) if name in _SOLUTIONS])
+        super().__init__({name: np.where(is_solution, values(name), np.nan) for name in self.units})
         self.converged: npt.NDArray[np.bool_] = self.status == 0
         listed = found.attrs.get("details", [])
         self.details: dict[str, Floats] = {name: values(name) for name in ([listed] if isinstance(listed, str) else listed)}

@@ -9,6 +9,8 @@
 #include "engine/base/error.h"
 #include "engine/base/nan.h"
 #include "engine/base/units.h"
+#include "engine/study/mechanism_doubts.h"
+#include "engine/study/outside_poses.h"
 
 namespace poesy::python {
 namespace {
@@ -51,6 +53,16 @@ void ArraySolver::check_poses(std::span<const double> poses) const {
     if (!std::ranges::all_of(pose, [](double value) { return std::isfinite(value); })) refuse("is not finite");
     if (const auto reason = model_->unreachable(pose)) refuse("is out of reach: " + *reason);
   }
+}
+
+std::vector<std::string> ArraySolver::doubts() const { return mechanism_doubts(study_.mechanism, *model_); }
+
+std::string ArraySolver::far_poses(std::span<const double> poses) const {
+  if (has_warned_) return {};
+  const std::string clause =
+      far_outside_clause({description().pose_coordinates.size(), {poses.begin(), poses.end()}}, description());
+  if (clause.empty() || has_warned_.exchange(true)) return {};
+  return clause + "; poses are in SI: metres and radians";
 }
 
 std::unique_ptr<ArraySolver::Scratch> ArraySolver::take_scratch() const {

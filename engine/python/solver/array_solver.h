@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -41,7 +42,14 @@ class ArraySolver {
   /// Throws InputError for the first pose that is not finite or out of reach. poses: [poses x coordinates], SI.
   void check_poses(std::span<const double> poses) const;
 
-  /// Solves all samples of a job. between: a function that is called from time to time, and may throw to end the job.
+  /// Questions about the geometry of the mechanism (mechanism_doubts()).
+  std::vector<std::string> doubts() const;
+
+  /// A warning of poses that are farther outside the workspace than it is wide; empty if there are none, or if an
+  /// earlier call returned a warning. poses: [poses x coordinates], SI.
+  std::string far_poses(std::span<const double> poses) const;
+
+  /// Solves all samples of a job. between: is called from time to time, and may throw to end the job.
   void solve(const ArrayJob& job, const std::function<void()>& between) const;
 
  private:
@@ -63,8 +71,9 @@ class ArraySolver {
 
   Study study_;
   std::unique_ptr<Model> model_;
-  std::vector<double> zeros_;  ///< [factors] zero errors of all factors
-  mutable std::mutex mutex_;   ///< protects the list of unused scratch memory
+  std::vector<double> zeros_;                     ///< [factors] zero errors of all factors
+  mutable std::atomic<bool> has_warned_ = false;  ///< whether far_poses() has returned a warning
+  mutable std::mutex mutex_;                      ///< protects the list of unused scratch memory
   mutable std::vector<std::unique_ptr<Scratch>> idle_;
 };
 

@@ -17,6 +17,8 @@ contiguous, and used where they stand; what does not fit is refused, never conve
 run while they solve, and one evaluator may be called by several threads.)";
 
 inline constexpr char kInputErrorText[] = "What was asked for cannot be: the program's own sentence. A ValueError.";
+inline constexpr char kWarningText[] =
+    "Poses far outside the workspace, or geometry that may be a mistake. A UserWarning; once for each evaluator.";
 inline constexpr char kFileErrorText[] = "A file cannot be read: the program's own sentence. An OSError.";
 
 inline constexpr char kStatusText[] = R"(How one solve ended: the numbers of status arrays, names as in result files.

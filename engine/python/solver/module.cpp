@@ -6,6 +6,7 @@
 #include <chrono>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
@@ -49,6 +50,20 @@ class Interruption {
  private:
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
+
+constexpr char kWarning[] = "PoesyWarning";
+
+/// Gives a warning of the class PoesyWarning. Throws if the user made warnings exceptions.
+void warn(const std::string& text) {
+  const py::object warning = py::module_::import("poesy_solver").attr(kWarning);
+  if (PyErr_WarnEx(warning.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
+/// Refuses poses that the mechanism does not reach, and warns of those far outside its workspace.
+void check_poses(const ArraySolver& solver, std::span<const double> poses) {
+  solver.check_poses(poses);
+  if (const std::string text = solver.far_poses(poses); !text.empty()) warn(text);
+}
 
 /// Solves a job without the GIL, so that other threads of Python run meanwhile.
 void solve_without_gil(const ArraySolver& solver, const ArrayJob& job) {
@@ -112,12 +127,14 @@ std::shared_ptr<ArraySolver> make_solver(const py::object& mechanism, const std:
                         .factors = factors,
                         .calibrated = calibrated,
                         .geometry = geometry};
-  return std::make_shared<ArraySolver>(study_of(request));
+  auto solver = std::make_shared<ArraySolver>(study_of(request));
+  for (const std::string& doubt : solver->doubts()) warn(doubt);
+  return solver;
 }
 
 AtPose at(const std::shared_ptr<ArraySolver>& solver, const py::object& pose) {
   AtPose bound{solver, pose_numbers(pose, 1, solver->description())};
-  solver->check_poses(bound.pose);
+  check_poses(*solver, bound.pose);
   return bound;
 }
 
@@ -145,9 +162,14 @@ py::object solve_many(const ArraySolver& solver, const py::object& poses, const 
   }
   SolveStatus* const ends = status_array(status, status_shape);
   py::array_t<double> responses = response_block(out, shape);
-  solver.check_poses(numbers);
+  check_poses(solver, numbers);
   solve_without_gil(solver, {numbers, given.data, paired ? varied : 0, given.samples, responses.mutable_data(), ends});
   return responses;
+}
+
+void add_warning(py::module_& module) {
+  module.attr(kWarning) = py::reinterpret_steal<py::object>(
+      PyErr_NewExceptionWithDoc("poesy_solver.PoesyWarning", kWarningText, PyExc_UserWarning, nullptr));
 }
 
 void add_status(py::module_& module) {
@@ -206,6 +228,7 @@ PYBIND11_MODULE(poesy_solver, module) {
   module.attr("__version__") = POESY_VERSION;
   py::register_exception<poesy::InputError>(module, "InputError", PyExc_ValueError).doc() = kInputErrorText;
   py::register_exception<poesy::FileError>(module, "FileError", PyExc_OSError).doc() = kFileErrorText;
+  add_warning(module);
   add_status(module);
   add_at_pose(module);
   add_evaluator(module);
