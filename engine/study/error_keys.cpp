@@ -809,13 +809,14 @@ bool states_size(const StudySection& errors, const Factor& factor) {
                    "errors.linear");
 }
 
-void check_sizes_of_features(const Study& study, const Reading& reading) {
+void check_sizes_of_features(const Study& study, const Reading& reading, std::span<const FactorIndex> of_parts) {
   const StudySection errors = reading.root.section("errors");
   if (reading.use != StudyUse::run) return;
   const std::vector<std::optional<Distribution>> by_zones = distributions_by_zones(study);
   const auto has_no_size = [&](FactorIndex error) {
     return std::ranges::find(study.analysis.factors, error) != study.analysis.factors.end() && !by_zones[error.value] &&
-           !is_given(study, error.value) && !states_size(errors, study.model().factors[error.value]);
+           std::ranges::find(of_parts, error) == of_parts.end() && !is_given(study, error.value) &&
+           !states_size(errors, study.model().factors[error.value]);
   };
   for (const Feature& feature : study.model().features) {
     const std::vector<FactorIndex> list = feature.errors();

@@ -127,6 +127,15 @@ class Drawing(ProgramTest):
         self.assertEqual(done.returncode, 2)
         self.assertIn("is 'leg', but this key takes the numbers of limbs; write some of 1, 2, 3", " ".join(done.stderr.decode().split()))
 
+    def test_errors_in_no_part_need_a_size(self):
+        """They would have the default size of 1 mm, which no drawing means."""
+        analysis = ('kind = "allocation"\nlimits = { tip_position = "0.12 mm" }\n'
+                    'parts = [ { zones = ["rail.*"], each = true, cost = { law = "reciprocal", b = 1, unit = "mm" } } ]')
+        self.write("some.toml", STUDY.format(fidelity="first-order", zones="", analysis=analysis))
+        done = self.poesy("check", "some.toml")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(b"key 'errors.zones' is missing", done.stderr)
+
     def test_division(self):
         """Threads, shards and a stop change no bit."""
         analysis = 'kind = "monte-carlo"\ndraws = "per machine"\nsamples = 3000\nlimits = { tip_position = "0.12 mm" }'

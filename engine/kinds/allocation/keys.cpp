@@ -58,6 +58,12 @@ void read_usual_sigmas(const StudyValue&, Study&, const Reading& reading) {
   static_cast<void>(read_sigmas(reading.root.section("analysis")));
 }
 
+std::vector<FactorIndex> errors_of_parts(std::span<const AllocatedPart> parts) {
+  std::vector<FactorIndex> errors;
+  for (const AllocatedPart& part : parts) errors.insert(errors.end(), part.factors.begin(), part.factors.end());
+  return errors;
+}
+
 /// Throws InputError if an error of these parts is also in an earlier part.
 void check_own_errors(const StudySection& block, std::span<const AllocatedPart> earlier,
                       std::span<const AllocatedPart> parts, const ModelDescription& model) {
@@ -299,6 +305,7 @@ void complete_allocation(Study& study, const Reading& reading) {
   if (reading.use == StudyUse::run) {
     require_all(study, section);
     check_simulated_machines(study, section);
+    check_sizes_of_features(study, reading, errors_of_parts(asked.parts));
   }
   const bool costs = std::ranges::any_of(asked.parts, has_cost);
   const auto aim = section.find("aim");
