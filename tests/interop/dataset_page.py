@@ -82,12 +82,12 @@ cost = { law = "reciprocal", b = 1, unit = "mm" }
 bounds = ["0.01 mm", "0.1 mm"]
 """,
     "limited_cases": """
-mechanism = { model = "2upr-rpu" }
-poses.count = 2
+mechanism.file = "drawn-delta.toml"
+poses = { select = "boundary", count = 2 }
 [analysis]
 kind = "evaluate"
-limits = { linear_deformation = "1 mm" }
-cases = [ { name = "one", errors = { delta_1_1_y = "0.01 mm" } } ]
+limits = { tip_position = "1 mm" }
+cases = [ { name = "one", errors = { rod_1 = "0.01 mm" } } ]
 """}
 
 
@@ -103,7 +103,7 @@ def run_studies(poesy, folder):
     for name, study in STUDIES.items():
         Path(folder, name + ".toml").write_text(BEGIN + study)
         run(poesy, folder, "run", name + ".toml", "-o", name + ".h5", "--quiet", "--yes")
-    Path(folder, "errors.csv").write_text("delta_1_1_y [mm]\n0.01\n")
+    Path(folder, "errors.csv").write_text("rod_1 [mm]\n0.01\n")
     run(poesy, folder, "evaluate", "limited_cases.toml", "--errors", "errors.csv", "-o", "limited_rows.h5", "--quiet")
     values = "geometry.l_A=60mm,70mm"
     run(poesy, folder, "sweep", "adaptive.toml", "--set", values, "-o", "sweep.h5", "--quiet", "--yes")
