@@ -10,6 +10,7 @@
 #include "engine/app/pdf.h"
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
+#include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/kinds/registry.h"
 #include "engine/kinds/study_file.h"
@@ -36,6 +37,13 @@ std::string default_path(const std::vector<std::string>& results) {
 
 bool may_be_replaced(const std::string& path) { return is_marked(path, kReportMark); }
 
+/// Throws InputError if a path has an ending that is not that of a report.
+void check_ending(const std::string& path) {
+  const std::string ending = lower_case(std::filesystem::path(path).extension().string());
+  if (ending.empty() || ending == ".html" || ending == ".htm" || is_pdf(path)) return;
+  throw InputError({path}, "is not a name of a report", "reports are HTML or PDF: name it REPORT.html or REPORT.pdf");
+}
+
 /// Reads a result file, and makes the model and the study that a report needs in addition.
 ReportedResult reported(const std::string& path) {
   ReportedResult result{read_result_with_warning(path), path};
@@ -50,6 +58,7 @@ int report(const ReportOptions& options) {
   const std::string named = options.report.empty() ? default_path(options.results) : options.report;
   const bool pdf = is_pdf(named);
   const std::string path = check_output_path(named, {"report", pdf ? is_pdf_report : may_be_replaced}, options.results);
+  check_ending(named);
   std::vector<ReportedResult> results;
   for (const std::string& result : options.results) results.push_back(reported(result));
   const std::string page = html_report(kind_of(results.front().stored).report, results);

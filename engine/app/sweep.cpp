@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,7 @@
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/base/units.h"
 #include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
 #include "engine/kinds/sweep/kind.h"
@@ -208,10 +210,41 @@ int interrupted(const ResumableRun& resumable) {
   return kInterrupted;
 }
 
+/// Throws InputError if a swept key is a parameter of the mechanism's geometry that lacks "geometry." or a unit. model:
+/// the study's mechanism.
+void check_geometry_key(const std::string& set, const SweptKey& swept, const ModelDescription& model) {
+  constexpr std::string_view kTable = "mechanism.geometry.";
+  const bool is_whole = swept.key.starts_with(kTable);
+  const std::string name = is_whole ? swept.key.substr(kTable.size()) : swept.key;
+  const auto parameter = std::ranges::find(model.geometry, name, &GeometryParameter::name);
+  if (parameter == model.geometry.end()) return;
+  if (!is_whole) {
+    throw InputError({}, "--set " + printable(set) + " names a parameter of the mechanism's geometry",
+                     "write geometry." + printable(set));
+  }
+  const auto is_bare = [](const std::string& value) { return parse_number(value).has_value(); };
+  if (parameter->dimension == Dimension::number || !std::ranges::all_of(swept.values, is_bare)) return;
+  throw InputError(
+      {}, "--set " + printable(set) + " has no unit",
+      "write it once, after the last number: " + printable(set) + std::string(display_unit(parameter->dimension).name));
+}
+
+/// Checks the swept keys that are parameters of the geometry (check_geometry_key()).
+void check_geometry_keys(const SweepOptions& options, std::span<const SweptKey> keys) {
+  std::optional<Study> study;
+  try {
+    study = read_study(options.study, registry(), StudyUse::run);
+  } catch (const InputError&) {
+    return;  // the values of --set may make the study valid; its errors are reported with them
+  }
+  for (std::size_t k = 0; k < keys.size(); ++k) check_geometry_key(options.set[k], keys[k], study->model());
+}
+
 int sweep(const SweepOptions& options) {
   const std::atomic<bool>& stop = catch_interrupts();
   std::vector<SweptKey> keys;
   std::ranges::transform(options.set, std::back_inserter(keys), parse_swept);
+  check_geometry_keys(options, keys);
   const std::vector<std::vector<GivenKey>> grid = grid_of(keys);
   const std::string stem = std::filesystem::path(options.study).stem().string();
   const Study first = study_with(options, grid.front());

@@ -13,6 +13,19 @@ namespace {
 
 constexpr std::size_t kMostWords = 12;
 
+/// A word of other programs, and the word of poesy for the same thing.
+struct Synonym {
+  std::string_view word;
+  std::string_view ours;
+};
+
+constexpr std::array<Synonym, 6> kSynonyms{{{"std", "sigma"},
+                                            {"stddev", "sigma"},
+                                            {"std_dev", "sigma"},
+                                            {"sd", "sigma"},
+                                            {"gauss", "normal"},
+                                            {"gaussian", "normal"}}};
+
 /// The smallest number of insertions, deletions and replacements of characters between two words (Levenshtein).
 std::size_t edit_distance(std::string_view from, std::string_view to) {
   std::vector<std::size_t> row(to.size() + 1);
@@ -173,6 +186,8 @@ std::string shell_command(const std::vector<std::string>& words) {
 }
 
 std::string_view nearest(std::string_view word, std::span<const std::string_view> known) {
+  const auto synonym = std::ranges::find(kSynonyms, word, &Synonym::word);
+  if (synonym != kSynonyms.end() && std::ranges::find(known, synonym->ours) != known.end()) return synonym->ours;
   const std::size_t allowed = std::max<std::size_t>(1, (word.size() + 2) / 3);
   std::string_view best;
   std::size_t best_distance = allowed + 1;

@@ -46,7 +46,8 @@ std::string_view formula_sign(std::string_view text);
 /// A command line of these words, quoted for a shell where necessary, on one line.
 std::string shell_command(const std::vector<std::string>& words);
 
-/// The known word that this word may mean, if it has a typing error; empty if no word is similar enough.
+/// The known word that this word may mean, if it has a typing error or is the word of other programs, as "std" is for
+/// "sigma"; empty if no word is similar enough.
 std::string_view nearest(std::string_view word, std::span<const std::string_view> known);
 
 /// A hint for an unknown word: "did you mean 'sigma'?" if a known word is similar, otherwise all known words: "known:

@@ -37,6 +37,14 @@ std::string described(const toml::node& node) {
   }
 }
 
+/// The sign of a range around zero, as drawings write it, with which a text begins; empty if there is none.
+std::string_view range_sign(std::string_view written) {
+  for (const std::string_view sign : {"+-", "+/-", "\xC2\xB1"}) {
+    if (written.starts_with(sign)) return sign;
+  }
+  return {};
+}
+
 std::string example(Dimension dimension) { return "\"1 " + std::string(display_unit(dimension).name) + "\""; }
 
 /// The unit in lower case without blanks, so that "n m" equals "Nm".
@@ -137,6 +145,7 @@ double StudyValue::quantity_of(const std::string& written, Dimension dimension) 
     const Quantity quantity = parse_quantity(written, dimension);
     if (quantity.dimension == dimension) return quantity.si;
   } catch (const QuantityError& reason) {
+    if (!range_sign(written).empty()) fail("is the range '" + written + "'", "write one number, or a half_width");
     fail(std::string("cannot be read: ") + reason.what(), unit_remedy(written, dimension));
   }
   fail("is '" + written + "', but must be " + with_article(dimension), "write it like " + example(dimension));
@@ -147,11 +156,8 @@ bool StudyValue::is_zero() const { return node_->is_number() && number() == 0.0;
 double StudyValue::half_width(Dimension dimension) const {
   if (!is_text()) return positive_quantity(dimension);
   const std::string written = printable(text());
-  for (const std::string_view sign : {"+-", "+/-", "\xC2\xB1"}) {
-    if (!written.starts_with(sign)) continue;
-    return positive(quantity_of(written.substr(sign.size()), dimension));
-  }
-  return positive_quantity(dimension);
+  const std::size_t sign = range_sign(written).size();
+  return sign == 0 ? positive_quantity(dimension) : positive(quantity_of(written.substr(sign), dimension));
 }
 
 double StudyValue::positive_quantity(Dimension dimension) const { return positive(quantity(dimension)); }

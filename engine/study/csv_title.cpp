@@ -7,6 +7,17 @@
 #include "engine/base/text.h"
 
 namespace poesy {
+namespace {
+
+/// A title with a known unit in parentheses, "z (mm)", written as "z [mm]"; empty for other titles.
+std::string with_brackets(std::string_view title) {
+  const std::size_t open = title.rfind('(');
+  if (open == std::string_view::npos || !title.ends_with(')')) return {};
+  const std::string_view unit = title.substr(open + 1, title.size() - open - 2);
+  return find_unit(unit) == nullptr ? "" : fmt::format("{} [{}]", trimmed(title.substr(0, open)), unit);
+}
+
+}  // namespace
 
 CsvTitle::CsvTitle(std::string_view text) : name(text) {
   const std::size_t bracket = text.find('[');
@@ -32,10 +43,29 @@ void refuse_other_tables(const CsvCell& cell) {
     throw InputError(cell.place, "column " + printable(cell.text) + " is in quotes, which poesy does not read",
                      "save the table without quotes");
   }
-  if (cell.text.find('\t') != std::string_view::npos) {
-    throw InputError(cell.place, "columns are separated by tabs, but poesy reads commas",
-                     "save the table with commas between columns");
+  if (cell.text.starts_with('#')) {
+    throw InputError(cell.place, "the column names begin with '#', but tables have no comments",
+                     "remove the sign (with numpy.savetxt: comments=\"\")");
   }
+  if (const std::string right = with_brackets(cell.text); !right.empty()) {
+    throw InputError(cell.place, "the unit of column '" + printable(cell.text) + "' is in parentheses",
+                     "write '" + printable(right) + "'");
+  }
+}
+
+void check_cell_count(const std::vector<CsvCell>& cells, std::size_t columns) {
+  if (cells.size() == columns) return;
+  const CsvCell& first = cells.front();
+  if (cells.size() == 1 && first.text.empty()) {
+    throw InputError(first.place, "this line is blank", "remove it; blank lines may only be at the end");
+  }
+  if (first.text.starts_with('#')) {
+    throw InputError(first.place, "this line begins with '#', but tables have no comments", "remove it");
+  }
+  const Place line{first.place.file, first.place.line, 1};
+  throw InputError(cells.size() > columns ? cells[columns].place : line,
+                   fmt::format("this line should have {} cells, but has {}", columns, cells.size()),
+                   "write one number a column, with commas between them and decimal points (0.5, not 0,5)");
 }
 
 }  // namespace poesy

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "engine/base/units.h"
 #include "engine/study/text_file.h"
@@ -22,8 +24,11 @@ struct CsvTitle {
 /// or is not a unit of this dimension.
 double size_of_unit(const CsvCell& cell, const CsvTitle& title, Dimension dimension);
 
-/// Throws InputError if a title is in quotes or contains a tab. Files with such titles are tables that poesy does not
-/// read.
+/// Throws InputError if an unknown title is in quotes, has its unit in parentheses, or begins with the sign of a
+/// comment.
 void refuse_other_tables(const CsvCell& cell);
+
+/// Throws InputError if a line does not have this number of cells. columns: the number of columns of the table.
+void check_cell_count(const std::vector<CsvCell>& cells, std::size_t columns);
 
 }  // namespace poesy

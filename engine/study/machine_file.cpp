@@ -246,11 +246,7 @@ void read_cell(const CsvCell& cell, const FileColumn& column, bool row_has_to, F
 FileRow read_row(CsvLines& lines, const std::vector<FileColumn>& columns) {
   FileRow row{.place = lines.next_place(), .pose = {}, .sd = {}, .values = {}, .name = {}, .to = {}};
   const std::vector<CsvCell> cells = lines.next();
-  if (cells.size() != columns.size()) {
-    throw InputError(cells.size() > columns.size() ? cells[columns.size()].place : row.place,
-                     fmt::format("this line should have {} cells, but has {}", columns.size(), cells.size()),
-                     "write one number a column, with commas between them and decimal points (0.5, not 0,5)");
-  }
+  check_cell_count(cells, columns.size());
   const auto to = std::ranges::find(columns, FileColumn::Role::to, &FileColumn::role);
   const bool row_has_to = to != columns.end() && !cells[static_cast<std::size_t>(to - columns.begin())].text.empty();
   for (std::size_t k = 0; k < cells.size(); ++k) read_cell(cells[k], columns[k], row_has_to, row);

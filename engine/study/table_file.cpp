@@ -222,13 +222,8 @@ using CheckCell = std::function<void(const Place& place, std::size_t n, const Ta
 /// Reads one line and adds its cells to `rows`.
 void read_row(CsvLines& lines, std::span<const TableColumn> columns, const KnownColumns& known, const CheckCell& check,
               Rows& rows) {
-  const Place line = lines.next_place();
   const std::vector<CsvCell> cells = lines.next();
-  if (cells.size() != columns.size()) {
-    throw InputError(cells.size() > columns.size() ? cells[columns.size()].place : line,
-                     fmt::format("this line should have {} cells, but has {}", columns.size(), cells.size()),
-                     "write one number a column, with commas between them and decimal points (0.5, not 0,5)");
-  }
+  check_cell_count(cells, columns.size());
   std::size_t n = 0;
   for (std::size_t k = 0; k < cells.size(); ++k) {
     if (columns[k].role == TableColumn::Role::label) read_label(cells[k], columns[k], rows);

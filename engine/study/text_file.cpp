@@ -20,6 +20,16 @@ namespace {
 
 constexpr std::size_t kMostCsvBytes = std::size_t{1} << 31;
 
+/// Throws InputError if a file begins like a spreadsheet or like a text in UTF-16, which spreadsheets also write.
+void refuse_other_formats(const std::string& path, std::string_view text) {
+  if (text.starts_with("PK\x03\x04")) {
+    throw InputError({path}, "is a spreadsheet or another archive, not a CSV file", "export the sheet as CSV");
+  }
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+    throw InputError({path}, "is a text in UTF-16, which poesy does not read", "save it as CSV in UTF-8");
+  }
+}
+
 }  // namespace
 
 std::string read_text(const std::string& path, std::string_view what, std::size_t most_bytes) {
@@ -43,6 +53,7 @@ std::string read_text(const std::string& path, std::string_view what, std::size_
 
 CsvLines::CsvLines(const std::string& path, std::string_view what)
     : path_(path), text_(read_text(path, what, kMostCsvBytes)), rest_(text_) {
+  refuse_other_formats(path, rest_);
   if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
   rest_.remove_suffix(rest_.size() - (rest_.find_last_not_of(" \t\r\n") + 1));
   if (rest_.empty()) throw InputError({path_, 1, 1}, "the file is empty", "write the column names in the first line");
@@ -58,6 +69,11 @@ std::vector<CsvCell> CsvLines::next() {
     throw InputError({path_, line_, semicolon + 1},
                      "columns are separated by semicolons, but poesy reads commas and decimal points",
                      "save the table with commas between columns and points in numbers");
+  }
+  const bool has_tab = trimmed(line).find('\t') != std::string_view::npos;
+  if (has_tab && line.find(',') == std::string_view::npos) {
+    throw InputError({path_, line_, 1}, "columns are separated by tabs, but poesy reads commas",
+                     "save the table with commas between columns");
   }
   std::vector<CsvCell> cells;
   for (std::size_t begin = 0; begin <= line.size();) {

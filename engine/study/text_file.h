@@ -23,16 +23,16 @@ struct CsvCell {
 /// be at the end. A byte order mark and line ends of Windows are ignored.
 class CsvLines {
  public:
-  /// what: the kind of file for messages ("table of poses"). Throws InputError if the file is empty or not a plain
-  /// file. Throws FileError if it cannot be read.
+  /// what: the kind of file for messages ("table of poses"). Throws InputError if the file is empty, not a plain file,
+  /// a spreadsheet or in UTF-16. Throws FileError if it cannot be read.
   CsvLines(const std::string& path, std::string_view what);
   CsvLines(const CsvLines&) = delete;
   CsvLines& operator=(const CsvLines&) = delete;
 
   bool done() const { return rest_.empty(); }                 ///< Returns true if all lines were read.
   Place next_place() const { return {path_, line_ + 1, 1}; }  ///< The place of the next line.
-  /// Reads the next line. Throws InputError for a line with a semicolon, because such a file is separated by semicolons
-  /// instead of commas.
+  /// Reads the next line. Throws InputError for a line with a semicolon, or with tabs and no comma, because these
+  /// separate its columns instead of commas.
   std::vector<CsvCell> next();
 
  private:

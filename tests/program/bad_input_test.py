@@ -176,6 +176,37 @@ class BadInput(ProgramTest):
                 self.assertEqual(done.returncode, 2, done.stderr)
                 self.assertEqual(done.stderr.count(b"\n"), 1, done.stderr)
 
+    def said_of(self, *arguments):
+        done = self.poesy(*arguments)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        return done.stderr.decode()
+
+    def test_words_of_other_programs(self):
+        for right, wrong, said in (('sigma = "1 mm"', 'std = "1 mm"', "did you mean 'sigma'?"),
+                                   ('"normal", sigma = "1 mm"', '"gauss", sigma = "1 mm"', "did you mean 'normal'?"),
+                                   ('"1 mm"', '"+-1 mm"', "is the range '+-1 mm'; write one number, or a half_width")):
+            self.write("s.toml", changed(right, wrong))
+            self.assertIn(said, self.said_of("check", "s.toml"))
+
+    def test_sweeps_of_geometry(self):
+        self.write("s.toml", STUDY)
+        for wrong, said in (("geometry.l_A=60:80:10", "has no unit; write it once, after the last number: geometry.l_A=60:80:10mm\n"),
+                            ("geometry.l_A=60,70", "write it once, after the last number: geometry.l_A=60,70mm\n"),
+                            ("l_A=60:80:10mm", "names a parameter of the mechanism's geometry; write geometry.l_A=60:80:10mm\n")):
+            self.assertIn(said, self.said_of("sweep", "s.toml", "--set", wrong))
+
+    def test_tables_of_other_programs(self):
+        self.write("s.toml", changed("count = 6", 'select = "file"\nfile = "p.csv"'))
+        for table, said in ((b"z (mm),beta,gamma\n", "the unit of column 'z (mm)' is in parentheses; write 'z [mm]'"),
+                            (b"z [mm]\tbeta [deg]\tgamma [deg]\n", "separated by tabs"),
+                            (b"# z,beta,gamma\n", "the column names begin with '#'"),
+                            (b"z,beta,gamma\n# home\n-0.2,0,0\n", ":2:1: this line begins with '#'"),
+                            (b"z,beta,gamma\n-0.2,0,0\n\n-0.2,0,0\n", ":3:1: this line is blank"),
+                            (b"PK\x03\x04\x14\x00", "is a spreadsheet or another archive, not a CSV file"),
+                            ("\ufeffz,beta,gamma\n".encode("utf-16-le"), "is a text in UTF-16")):
+            (self.folder / "p.csv").write_bytes(table)
+            self.assertIn(said, self.said_of("check", "s.toml"))
+
     def test_a_singular_pose_of_a_file(self):
         # Rods as long as the radii differ, on the level: the platform cannot be driven from there.
         self.write("p.csv", "alpha,beta,z\n0,0,0.3\n")

@@ -136,6 +136,8 @@ class Report(ProgramTest):
         result = (self.folder / "r.h5").read_bytes()
         self.assertIn("also an input", self.refused(2, "r.h5", "-o", "r.h5"))
         self.assertEqual((self.folder / "r.h5").read_bytes(), result)
+        self.assertIn("reports are HTML or PDF", self.refused(2, "r.h5", "-o", "r.docx"))
+        self.assertFalse((self.folder / "r.docx").exists())
         self.assertIn("does not exist", self.refused(2, "r.h5", "-o", "missing/r.html"))
         self.refused(3, "missing.h5")
         self.refused(3, "study.toml")

@@ -25,7 +25,7 @@ poses = { count = 1 }
 linear = { distribution = "normal", sigma = "0.1 mm" }
 [analysis]
 kind = "sensitivity"
-factors = ["delta_x_1_0"]
+factors = ["delta_1_1_x"]
 samples = 20
 """
 
@@ -87,7 +87,7 @@ class StudyNotes(ProgramTest):
         swept = self.errors_of("sweep", "study.toml", "--set", "errors.linear.sigma=0.1,0.2mm", "-o", "s.h5", "--quiet")
         self.assertEqual(swept.count(asked), 1, swept)
         self.assertIn(asked, self.errors_of("tolerances", "r.h5", "--response", "position", "-d", "t"))
-        self.assertIn(f"warning: {asked}", self.succeeds("show", "r.h5"))
+        self.assertIn(f"warning: {asked}", " ".join(self.succeeds("show", "r.h5").split()))
         self.succeeds("report", "r.h5")
         self.assertIn(asked, (self.folder / "r.html").read_text())
 
@@ -104,12 +104,27 @@ class StudyNotes(ProgramTest):
             self.assertIn(f"poesy: warning: {asked}", self.errors_of("run", "study.toml", "-o", "r.h5", "--quiet"))
         self.write_rps()
         swept = self.errors_of("sweep", "study.toml", "--set", "geometry.a=250,-250mm", "-o", "s.h5", "--quiet")
-        self.assertEqual(swept.count("poesy: warning: with mechanism.geometry.a = -250mm: a = -250 mm;"), 1, swept)
+        self.assertEqual(swept.count("poesy: warning: with mechanism.geometry.a = -250 mm: a = -250 mm;"), 1, swept)
 
     def test_geometry_like_the_files_or_zero(self):
         for given in ("300 mm", "26 mm"):
             self.write_rps(RPS.replace("}", f', geometry = {{ a = "{given}" }} }}', 1))
             self.assertNotIn("that meant", self.succeeds("check", "study.toml"))
+
+    def test_limits_in_another_unit(self):
+        """Of a yield of 0 or 100 % the ratio of limit and root mean square is said where it is far from 1."""
+        machines = RPS.replace('"sensitivity"', '"monte-carlo"\ndraws = "per machine"\nlimits = { position = "LIMIT" }')
+        for limit, said in (("0.1 um", "The root mean square of position is "), ("0.2 m", "The limit of position is ")):
+            self.write_rps(machines.replace("LIMIT", limit))
+            self.succeeds("run", "study.toml", "-o", "r.h5", "--quiet")
+            shown = " ".join(self.succeeds("show", "r.h5").split())
+            self.assertRegex(shown, said + r"\S+ times its (limit|root mean square): look at the units of limits and sigmas")
+            self.succeeds("report", "r.h5")
+            self.assertIn(said, (self.folder / "r.html").read_text())
+        for limit in ("0.1 mm", "5 um"):
+            self.write_rps(machines.replace("LIMIT", limit))
+            self.succeeds("run", "study.toml", "-o", "r.h5", "--quiet")
+            self.assertNotIn("look at the units", self.succeeds("show", "r.h5"))
 
     def test_poses_with_units_outside_the_workspace(self):
         self.write_rps(RPS.replace("count = 1", 'select = "file", file = "p.csv"'))

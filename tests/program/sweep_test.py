@@ -238,7 +238,7 @@ class Sweep(ProgramTest):
             (("--set", "l_A"), "--set l_A names no key and its values; write KEY=FROM:TO:STEP or KEY=A,B,C"),
             (("--set", "geometry.l_A=60"), "has one value only"),
             (("--set", "geometry.l_A=60:80:0mm"), "makes no step"),
-            (("--set", "geometry.l_A=60,70"), "with mechanism.geometry.l_A = 60: study.toml:"),
+            (("--set", "geometry.l_A=60,70"), "has no unit; write it once, after the last number: geometry.l_A=60,70mm"),
             (("--set", "geometry.l_B_=60,70 mm"), "l_B_"),
             (("--set", "geometry.l_A=0,70 mm"), "with mechanism.geometry.l_A = 0 mm: "),
             (("--set", "analysis.kind=monte-carlo,sensitivity"), "with analysis.kind = sensitivity"),

@@ -15,6 +15,7 @@
 #include "engine/base/nan.h"
 #include "engine/base/units.h"
 #include "engine/kinds/monte_carlo/drivers.h"
+#include "engine/kinds/monte_carlo/far_limits.h"
 #include "engine/kinds/monte_carlo/kind.h"
 #include "engine/kinds/monte_carlo/machine_report.h"
 #include "engine/kinds/monte_carlo/result.h"
@@ -499,6 +500,7 @@ Answer answer(const StoredResult& result) {
 Settling settling(const StoredResult& result) { return {"overall means", {"all errors"}, result.headline}; }
 
 void warn(const StoredResult& result, std::vector<std::string>& list) {
+  for (const std::string& note : far_limit_notes(result)) list.push_back(note + ".");
   if (std::string text = not_settled_text(result, settling(result)); !text.empty()) list.push_back(std::move(text));
 }
 
@@ -569,6 +571,10 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
 std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOptions&) {
   const MonteCarloResult& found = monte_carlo_of(result);
   std::vector<Table> tables;
+  if (const std::vector<std::string> notes = far_limit_notes(result); !notes.empty()) {
+    tables.push_back(yield_table(result, *result.verdicts));
+    std::ranges::copy(notes, std::back_inserter(tables.back().notes));
+  }
   if (found.poses() > 0 && !found.levels.empty()) {
     if (found.machines && found.machines->calibration) tables.push_back(calibration_table(result));
     std::ranges::move(driver_tables(result), std::back_inserter(tables));

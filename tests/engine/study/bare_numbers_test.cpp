@@ -36,8 +36,8 @@ TEST(BareNumbers, OfPosesOutsideTheWorkspace) {
 }
 
 TEST(BareNumbers, OfPosesWithUnits) {
-  EXPECT_EQ(pose_text("z [mm],beta [deg],gamma [rad]\n-200,0,0\n250,0,0\n"),
-            "p.csv: pose 2 has z = 250 mm, outside the workspace from -300 mm to -180 mm; look at its sign and unit");
+  EXPECT_EQ(pose_text("z [mm],beta [deg],gamma [rad]\n-200,0,0\n-350,0,0\n"),
+            "p.csv: pose 2 has z = -350 mm, outside the workspace from -300 mm to -180 mm; look at its sign and unit");
   EXPECT_EQ(pose_text("z [mm],beta [deg],gamma [rad]\n-200,20,0.1\n"), "");
 }
 
