@@ -230,7 +230,10 @@ int show_method(const ShowOptions& options) {
     throw InputError({}, "--method describes one result, but several are given", "give one");
   }
   const StoredResult result = read_result_with_warning(options.results.front());
-  print(prose_of(method_text(kind_of(result).report, result), width_of(options)) + "\n" + method_references(result));
+  const ReportKind& kind = kind_of(result).report;
+  const std::optional<Study> study = study_in(result, registry());
+  print(prose_of(method_text(kind, result, study ? &*study : nullptr), width_of(options)) + "\n" +
+        method_references(kind, result));
   return kDone;
 }
 

@@ -11,6 +11,7 @@
 #include "engine/report/display.h"
 #include "engine/report/drawn_errors.h"
 #include "engine/report/solves.h"
+#include "engine/report/sources.h"
 #include "engine/report/tables.h"
 #include "engine/schema/settings.h"
 #include "engine/study/limit_keys.h"
@@ -22,8 +23,39 @@ std::string setting(const StoredResult& result, std::string_view section, std::s
   return readable_setting(result.study_text, section, key);
 }
 
+/// "The geometry differs from that of the mechanism's file: a = 150 mm (there 200 mm)."
+std::string geometry_sentence(const Study* study) {
+  if (study == nullptr) return {};
+  const std::vector<GeometryParameter>& known = study->model().geometry;
+  std::vector<std::string> changes;
+  for (std::size_t g = 0; g < known.size(); ++g) {
+    const std::string value = readable_text({study->mechanism.geometry[g], known[g].dimension});
+    const std::string usual = readable_text({known[g].published, known[g].dimension});
+    if (value != usual) changes.push_back(fmt::format("{} = {} (there {})", known[g].name, value, usual));
+  }
+  if (changes.empty()) return {};
+  return fmt::format("The geometry differs from that of the mechanism{}: {}.",
+                     study->mechanism.file ? "'s file" : " as published", fmt::join(changes, ", "));
+}
+
+/// "The equations were solved to first order in the errors."
+std::string fidelity_sentence(const StoredResult& result) {
+  const std::string fidelity = setting(result, "mechanism", "fidelity");
+  if (fidelity.empty()) return {};
+  const std::string_view how = fidelity == "exact"         ? "exactly"
+                               : fidelity == "first-order" ? "to first order in the errors"
+                                                           : "both exactly and to first order in the errors";
+  return fmt::format("The equations of the mechanism were solved {}.", how);
+}
+
+std::string metric_sentence(const StoredResult& result) {
+  return result.metric.empty()
+             ? std::string("No metric weighs angles against lengths, because the mechanism needs none.")
+             : "Mismatch is weighed by the metric " + metric_text(result) + ".";
+}
+
 std::string errors_sentence(const StoredResult& result, const StudyWords& words) {
-  if (result.factors.empty()) return {};
+  if (result.factors.empty() || words.fitted) return {};
   std::string text = counted(result.factors.size(), "geometric error was", "geometric errors were");
   if (!words.draws) return fmt::format("{} given values.", text);
   const std::vector<std::string> sizes = drawn_sizes(result, words);
@@ -93,7 +125,8 @@ std::string background_sentence(const StoredResult& result) {
 
 std::string poses_sentence(const StoredResult& result, const StudyWords& words) {
   const std::string choice = words.own_poses ? setting(result, "poses", "select") : std::string();
-  std::string text = "The mechanism was solved at " + counted(result.poses.size(), "pose", "poses");
+  std::string text = (words.fitted ? "What the calibration leaves was predicted at " : "The mechanism was solved at ") +
+                     counted(result.poses.size(), "pose", "poses");
   if (!choice.empty()) text += fmt::format(" (selected: {})", choice);
   const std::string samples = setting(result, "analysis", "samples");
   const bool machines = setting(result, "analysis", "draws") == "per machine";
@@ -106,21 +139,25 @@ std::string poses_sentence(const StoredResult& result, const StudyWords& words) 
   return text + ".";
 }
 
-/// A sentence on the errors that a calibration removes before responses are computed; empty if there is no calibration.
+/// A sentence on the errors that a calibration removes before responses are computed, or on the settings of the fit to
+/// the measurements of one machine; empty if there is no calibration.
 std::string calibration_sentence(const StoredResult& result, const StudyWords& words) {
   constexpr std::string_view kTable = "analysis.calibration";
-  if (words.from_tables) return {};
+  if (words.from_tables && !words.fitted) return {};
   if (setting(result, "analysis", "calibrated") == "true") return fmt::format("Responses are {}.", kLeftByCalibration);
   const std::string fit = setting(result, kTable, "fit");
   if (fit.empty()) return {};
   std::vector<std::string> parts{"fitted: " + fit};
   for (const StudySetting& one : study_settings(result.study_text)) {
     const bool is_noise = one.section == "analysis.calibration.noise";
-    const bool says = one.section == kTable && (one.key == "measured" || one.key == "frame" || one.key == "prior");
+    const bool says = one.section == kTable && (one.key == "measured" || one.key == "frame" || one.key == "prior" ||
+                                                (words.fitted && (one.key == "target" || one.key == "sd")));
     if (!is_noise && !says) continue;
     parts.push_back(fmt::format("{}{}: {}", is_noise ? "noise of " : "", one.key, readable_setting(one.value)));
   }
-  return fmt::format("Responses are what a calibration of each machine leaves ({}).", fmt::join(parts, "; "));
+  const std::string settings = fmt::format("{}", fmt::join(parts, "; "));
+  return words.fitted ? fmt::format("Settings of the fit: {}.", settings)
+                      : fmt::format("Responses are what a calibration of each machine leaves ({}).", settings);
 }
 
 std::string solves_sentence(const SolveCounts& solves) {
@@ -131,23 +168,27 @@ std::string solves_sentence(const SolveCounts& solves) {
                      percent_text(share_not_converged(solves)));
 }
 
+/// The verdict on the yield; null if the result has none.
+const YieldVerdict* yield_of(const StoredResult& result) {
+  return result.verdicts && result.verdicts->yield ? &*result.verdicts->yield : nullptr;
+}
+
 std::string limits_sentence(const StoredResult& result) {
-  if (!result.verdicts) return {};
   std::string text;
-  for (const LimitVerdict& one : result.verdicts->limits) {
+  for (const LimitVerdict& one : result.verdicts ? result.verdicts->limits : std::vector<LimitVerdict>()) {
     const NamedUnit& response = result.responses[one.response];
     text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", response.name,
                         limit_text(one.limit, [&](double value) { return response_text(response, value); }));
   }
-  if (text.empty()) {  // a certificate judges all limits together and gives no verdict on each
+  if (text.empty()) {  // A certificate judges all limits together, and a sweep keeps no verdict on each of them.
     for (const StudySetting& one : study_settings(result.study_text)) {
       if (one.section != "analysis.limits") continue;
       text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", one.key, readable_setting(one.value));
     }
   }
   text = text.empty() ? "" : "Limits: " + text + ".";
-  const std::optional<YieldVerdict>& yield = result.verdicts->yield;
-  if (!yield) return text;
+  const YieldVerdict* yield = yield_of(result);
+  if (yield == nullptr) return text;
   if (yield->asked > 0.0) text += fmt::format(" The wanted yield is {}.", percent_text(yield->asked));
   return text + fmt::format(" The yield is {}, with a {} interval of {} to {} (Clopper and Pearson).",
                             percent_text(yield->value), percent_text(yield->conf_level), percent_text(yield->ci_low),
@@ -161,30 +202,40 @@ std::string repeat_sentence(const StoredResult& result, const StudyWords& words)
                      result.content_sha256);
 }
 
+/// What the kind adds; nothing if it adds nothing.
+MethodWords method_of(const ReportKind& kind, const StoredResult& result) {
+  return kind.method == nullptr ? MethodWords() : kind.method(result);
+}
+
 }  // namespace
 
-std::string method_text(const ReportKind& kind, const StoredResult& result) {
+std::string method_text(const ReportKind& kind, const StoredResult& result, const Study* study) {
   const StudyWords words = kind.words(result);
   std::string text = fmt::format("The study of kind {} of the mechanism {} was made with poesy {} ({}).", result.kind,
                                  result.model, result.poesy_version, result.git_commit);
   for (const std::string& sentence :
-       {errors_sentence(result, words), zones_sentence(result), means_sentence(result), measured_sentence(result),
-        background_sentence(result), poses_sentence(result, words), calibration_sentence(result, words),
-        result.metric.empty() ? std::string() : "Mismatch is weighed by the metric " + metric_text(result) + ".",
-        solves_sentence(kind.tally(result).total()), limits_sentence(result), repeat_sentence(result, words)}) {
+       {geometry_sentence(study), errors_sentence(result, words), zones_sentence(result), means_sentence(result),
+        measured_sentence(result), background_sentence(result), poses_sentence(result, words),
+        fidelity_sentence(result), method_of(kind, result).text, calibration_sentence(result, words),
+        metric_sentence(result), solves_sentence(kind.tally(result).total()), limits_sentence(result),
+        repeat_sentence(result, words)}) {
     if (!sentence.empty()) text += " " + sentence;
   }
   return text;
 }
 
-std::string method_references(const StoredResult& result) {
-  return fmt::format(
+std::string method_references(const ReportKind& kind, const StoredResult& result) {
+  std::string text = fmt::format(
       "@misc{{poesy,\n"
       "  author = {{{{The poesy developers}}}},\n"
       "  title = {{poesy: a parallel Monte Carlo sensitivity engine for precision parallel robots}},\n"
       "  note = {{Version {}, commit {}}}\n"
       "}}\n",
       result.poesy_version, result.git_commit);
+  std::vector<std::string_view> sources = method_of(kind, result).sources;
+  if (yield_of(result) != nullptr) sources.push_back(kClopperPearson);
+  for (const std::string_view source : sources) text += fmt::format("\n{}", source);
+  return text;
 }
 
 }  // namespace poesy

@@ -7,11 +7,14 @@
 
 namespace poesy {
 
-/// A paragraph on the method for a paper, with the numbers of this result: program, mechanism, errors, poses, samples,
-/// metric, solves, limits, seed and hash. Facts that the study does not state are left out. kind: the result's kind.
-std::string method_text(const ReportKind& kind, const StoredResult& result);
+/// A paragraph on the method for a paper, with the numbers of this result: program, mechanism, geometry, errors, poses,
+/// samples, fidelity, the method of the kind, metric, solves, limits, seed and hash. Facts that the study does not
+/// state are left out. kind: the result's kind. study: the study of the result, whose geometry is compared with that of
+/// the mechanism; null if it cannot be read again.
+std::string method_text(const ReportKind& kind, const StoredResult& result, const Study* study);
 
-/// What a paper that uses this result should cite, as BibTeX: the program with its version and commit.
-std::string method_references(const StoredResult& result);
+/// What a paper that uses this result should cite, as BibTeX: the program with its version and commit, and the
+/// publications behind the method of this kind.
+std::string method_references(const ReportKind& kind, const StoredResult& result);
 
 }  // namespace poesy

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/report/html/parts.h"
@@ -16,14 +17,22 @@ namespace poesy {
 
 /// Facts about the study of a result that its kind states, for the list of what was run.
 struct StudyWords {
-  bool draws = false;                   ///< true if errors were drawn from distributions
-  bool from_tables = false;             ///< true if errors, or measurements of them, came from a table
-  bool own_poses = true;                ///< true if the poses are those of the study
-  std::string samples = {};             ///< number of samples at each pose, as text; empty: [analysis] samples
+  bool draws = false;        ///< true if errors were drawn from distributions
+  bool from_tables = false;  ///< true if errors, or measurements of them, came from a table
+  bool own_poses = true;     ///< true if the poses are those of the study
+  /// True if errors were fitted to measurements. The poses of the result are then those of a prediction.
+  bool fitted = false;
+  std::string samples = {};             ///< number of samples at each pose, as text; empty: that of the study
   std::vector<std::string> sizes = {};  ///< sizes of the errors, if they are not drawn
   /// Sizes with which errors are drawn, if the kind chose them itself; empty: those of [errors].
   std::vector<std::string> drawn = {};
   std::optional<std::uint64_t> seed = {};  ///< the seed of the samples, if it differs from [run] seed
+};
+
+/// What a kind adds to the description of the method for a paper.
+struct MethodWords {
+  std::string text;                            ///< sentences on the method of the kind
+  std::vector<std::string_view> sources = {};  ///< BibTeX entries of the publications behind it (report/sources.h)
 };
 
 /// What a report needs from a kind of study. Each kind of study has one such object. A member that is null has no
@@ -39,7 +48,8 @@ struct ReportKind {
   bool sorts = false;  ///< true if the kind's tables of ranked errors support every RowOrder
   /// The quantities that become more exact with the number of samples; null: the kind has no samples.
   Settling (*settling)(const StoredResult&) = nullptr;
-  StudyWords (*words)(const StoredResult&);  ///< texts for the list of what was run
+  StudyWords (*words)(const StoredResult&);              ///< texts for the list of what was run
+  MethodWords (*method)(const StoredResult&) = nullptr;  ///< the method, for a paper; null: the kind adds nothing
   /// Adds the kind's own warnings; null: it has none.
   void (*warn)(const StoredResult&, std::vector<std::string>& list) = nullptr;
   /// The summary at the top of a report. The report appends to the line "How sure" how the solves ended.

@@ -178,6 +178,49 @@ class Paper(ProgramTest):
         done = self.poesy("show", "study.h5", "--method", "--json")
         self.assertEqual(done.returncode, 2)
 
+    def method_of(self, result):
+        """The paragraph and the names of the BibTeX entries."""
+        text = self.succeeds("show", result, "--method", "--width", "1000")
+        return " ".join(text.split()), re.findall(r"^@\w+\{(\w+),$", text, re.MULTILINE)
+
+    def test_the_method_states_fidelity_geometry_and_sources(self):
+        shutil.copyfile(GALLERY / "tricept" / "tricept.toml", self.folder / "tricept.toml")
+        study = (GALLERY / "tricept" / "yield.toml").read_text().replace("samples = 5000", "samples = 200")
+        self.write("study.toml", study)
+        self.poesy("run", "study.toml", "--quiet")
+        words, sources = self.method_of("study.h5")
+        for said in ("The equations of the mechanism were solved to first order in the errors.", "All errors vary together.",
+                     "No metric weighs angles against lengths, because the mechanism needs none."):
+            self.assertIn(said, words)
+        self.assertNotIn("The geometry differs", words)
+        self.assertEqual(sources, ["poesy", "clopper1934"])
+        self.poesy("sweep", "study.toml", "--set", "geometry.a=150:250:50mm", "-o", "sweep.h5", "--quiet")
+        words, sources = self.method_of("sweep.h5")
+        for said in ("The geometry differs from that of the mechanism's file: a = 150 mm (there 250 mm).",
+                     "3 designs of the kind monte-carlo were compared, with these values: mechanism.geometry.a = 150, 200, 250 mm.",
+                     "Limits: tip_position (0.2 mm).", "(Agresti and Min)", "those of Clopper and Pearson."):
+            self.assertIn(said, words)
+        self.assertEqual(sources, ["poesy", "clopper1934", "agresti2005"])
+        self.write("exact.toml", (GALLERY / "tricept" / "study.toml").read_text().replace("samples = 1000", "samples = 20")
+                   .replace("first-order", "exact"))
+        self.succeeds("run", "exact.toml", "--quiet")
+        words, sources = self.method_of("exact.h5")
+        self.assertIn("The index of an error is the standard deviation of the response over that of the error", words)
+        self.assertIn("The equations of the mechanism were solved exactly.", words)
+        self.assertEqual(sources, ["poesy", "du2022"])
+
+    def test_the_method_states_a_calibration(self):
+        for path in (MECHANISMS.parent / "calibration").iterdir():
+            shutil.copyfile(path, self.folder / path.name)
+        self.succeeds("calibrate", "delta-measured.toml", "--measured", "delta-heights.csv", "-o", "machine.h5")
+        words, sources = self.method_of("machine.h5")
+        for said in ("7 numbers were fitted to 12 deviation_z, 3 distances that were measured at 13 poses.",
+                     "Residual 0.828 of the noise; chi-square 10.3 of 8 (p = 0.25)", "noise of z: 0.01 mm",
+                     "noise of distance: 0.05 mm", "frame: known", "What the calibration leaves was predicted at 7 poses"):
+            self.assertIn(said, words)
+        self.assertNotIn("were given values", words)
+        self.assertEqual(sources, ["poesy"])
+
     def test_the_method_states_what_overrides_and_parts_draw(self):
         study = (GALLERY / "tricept" / "yield.toml").read_text()
         shutil.copyfile(GALLERY / "tricept" / "tricept.toml", self.folder / "tricept.toml")

@@ -250,8 +250,14 @@ StudyWords words(const StoredResult& result) {
           .seed = found.certificate_seed};
 }
 
-/// The share of each error in the mean square under the tightest limit, and the use of the limit that is used most at
-/// each pose.
+MethodWords method(const StoredResult& result) {
+  return {fmt::format(
+      "{} under the wanted yield were found by linearised mean squares and by the yield of drawn machines, and were "
+      "certified with fresh machines, which the search had not seen.",
+      has_costs(allocation_of(result)) ? "Tolerances of least cost" : "The largest tolerances")};
+}
+
+/// The share of each error in the mean square, and at each pose the use of the limit that is used most.
 ErrorShares error_shares(const StoredResult& result) {
   const Result& found = allocation_of(result);
   if (found.parts() == 0 || found.poses() == 0) return {};
@@ -311,6 +317,7 @@ constinit const ReportKind kAllocationReport{.tally = tally,
                                              .merits = merits,
                                              .sorts = true,
                                              .words = words,
+                                             .method = method,
                                              .warn = warn,
                                              .answer = answer,
                                              .shown_cells = cells,

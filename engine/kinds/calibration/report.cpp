@@ -100,13 +100,19 @@ SolveTally tally(const StoredResult&) { return {"", {"all errors"}, 1, {SolveCou
 std::string sentence(std::string_view text) { return as_sentence(typographic(text)); }
 
 StudyWords words(const StoredResult& result) {
-  StudyWords made{.from_tables = true, .samples = "measurements"};
+  StudyWords made{.from_tables = true, .fitted = true, .samples = "measurements"};
   made.sizes = drawn_sizes(result, made);
   return made;
 }
 
-/// The summary at the top of the report. If the measurements contradict the fitted errors, it says so first, because
-/// everything else depends on them.
+MethodWords method(const StoredResult& result) {
+  const CalibrationResult& found = calibration_of(result);
+  return {fmt::format("{} fitted to {} that were measured at {}. {}",
+                      counted(found.fitted.size(), "number was", "numbers were"), values_text(found),
+                      counted(found.measured_poses, "pose", "poses"), as_sentence(residual_text(found)))};
+}
+
+/// If the measurements contradict the fitted errors, the answer says so first, because all else rests on them.
 Answer answer(const StoredResult& result) {
   const CalibrationResult& found = calibration_of(result);
   Answer lines;
@@ -156,6 +162,7 @@ constinit const ReportKind kCalibrationReport{
     .tally = tally,
     .tables = calibration_result_tables,
     .words = words,
+    .method = method,
     .answer = answer,
     .shown_cells = [](const StoredResult& result) { return shown_cells(result, 1); },
     .page = add_page,

@@ -128,7 +128,7 @@ bool are_same(const CalibrationResult& found, std::size_t one, std::size_t other
 
 std::vector<std::string> moved_names() { return {calibration::kComponents.begin(), calibration::kComponents.end()}; }
 
-std::string measured_text(const CalibrationResult& found) {
+std::string values_text(const CalibrationResult& found) {
   std::map<std::string, std::size_t> counts;
   for (const std::string& value : found.values) ++counts[value.substr(0, value.find(' '))];
   std::vector<std::string> parts;
@@ -136,7 +136,11 @@ std::string measured_text(const CalibrationResult& found) {
     if (column != "distance") parts.push_back(fmt::format("{} {}", count, column));
   }
   if (found.distances > 0) parts.push_back(counted(found.distances, "distance", "distances"));
-  return fmt::format("{}: {} at {}; {}, {}", found.file, fmt::join(parts, ", "),
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string measured_text(const CalibrationResult& found) {
+  return fmt::format("{}: {} at {}; {}, {}", found.file, values_text(found),
                      counted(found.measured_poses, "pose", "poses"),
                      counted(found.fitted.size(), "fitted error", "fitted errors"),
                      counted(found.dof, "degree of freedom", "degrees of freedom"));

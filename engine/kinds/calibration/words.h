@@ -7,6 +7,8 @@
 
 namespace poesy {
 
+/// What was measured: "12 deviation_z, 3 distances"
+std::string values_text(const CalibrationResult& found);
 /// What was measured and fitted: "heights.csv: 12 heights, 3 distances at 13 poses; 7 fitted errors, 8 degrees of
 /// freedom"
 std::string measured_text(const CalibrationResult& found);

@@ -586,12 +586,26 @@ std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOpt
   return tables;
 }
 
+namespace {
+
+MethodWords method(const StoredResult& result) {
+  if (!monte_carlo_of(result).machines) return {"All errors vary together, and are drawn anew at each pose."};
+  std::string text = "All errors vary together.";
+  if (result.verdicts && result.verdicts->yield) {
+    text += " The yield is the share of machines that keep all limits at all poses.";
+  }
+  return {std::move(text)};
+}
+
+}  // namespace
+
 constinit const ReportKind kMonteCarloReport{
     .tally = tally,
     .tables = monte_carlo_tables,
     .merits = merits,
     .settling = settling,
     .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
+    .method = method,
     .warn = warn,
     .answer = answer,
     .shown_cells = [](const StoredResult& result) { return shown_cells(result, kSummaryRows); },

@@ -18,6 +18,7 @@
 #include "engine/kinds/sensitivity/separation.h"
 #include "engine/kinds/sensitivity/tolerances.h"
 #include "engine/report/display.h"
+#include "engine/report/sources.h"
 #include "engine/stats/indices.h"
 #include "engine/stats/tolerance.h"
 
@@ -296,6 +297,13 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   add_fidelity_section(result, tables, page);
 }
 
+MethodWords method(const StoredResult&) {
+  return {
+      "The index of an error is the standard deviation of the response over that of the error while only this error "
+      "varies; indices over the workspace are the mean of the poses' indices plus their standard deviation.",
+      {kDu}};
+}
+
 }  // namespace
 
 constinit const ReportKind kSensitivityReport{.tally = sensitivity_tally,
@@ -305,6 +313,7 @@ constinit const ReportKind kSensitivityReport{.tally = sensitivity_tally,
                                               .sorts = true,
                                               .settling = settling,
                                               .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
+                                              .method = method,
                                               .warn = warn,
                                               .answer = sensitivity_answer,
                                               .shown_cells = sensitivity_cells,

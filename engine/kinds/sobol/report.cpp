@@ -10,7 +10,9 @@
 #include "engine/kinds/sobol/kind.h"
 #include "engine/kinds/sobol/result.h"
 #include "engine/report/display.h"
+#include "engine/report/sources.h"
 #include "engine/report/tables.h"
+#include "engine/schema/settings.h"
 
 namespace poesy {
 namespace {
@@ -443,12 +445,26 @@ std::vector<Table> sobol_tables(const StoredResult& result, const TableOptions& 
   return tables;
 }
 
+namespace {
+
+MethodWords method(const StoredResult& result) {
+  const std::string design = study_setting(result.study_text, "analysis", "design");
+  const std::string_view points = design == "\"sobol\"" ? "scrambled Sobol' points"
+                                  : design == "\"lhs\"" ? "Latin hypercubes"
+                                                        : "independent draws";
+  return {fmt::format("First-order and total indices were estimated from {}, by squared differences (Jansen).", points),
+          {kJansen}};
+}
+
+}  // namespace
+
 constinit const ReportKind kSobolReport{.tally = tally,
                                         .tables = sobol_tables,
                                         .merits = merits,
                                         .sorts = true,
                                         .settling = settling,
                                         .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
+                                        .method = method,
                                         .warn = warn,
                                         .answer = answer,
                                         .shown_cells = cells,

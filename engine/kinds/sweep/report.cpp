@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,7 @@
 #include "engine/kinds/sweep/result.h"
 #include "engine/report/display.h"
 #include "engine/report/merits.h"
+#include "engine/report/sources.h"
 #include "engine/report/tables.h"
 
 namespace poesy {
@@ -299,8 +301,41 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
   return all;
 }
 
-/// Runs nothing. The command `poesy sweep` makes a sweep from studies of other kinds, and no study file can state the
-/// kind `sweep`. But every Kind needs a function that runs its studies.
+/// The values of a key in all designs, each once: "150, 200, 250 mm".
+std::string values_of_key(const SweepResult& found, std::size_t k) {
+  std::vector<std::string> values;
+  const bool numbers = has_numbers(found, k);
+  for (std::size_t d = 0; d < found.designs(); ++d) {
+    std::string value = numbers ? number_text(found.number(d, k), 12) : readable_setting(found.value(d, k));
+    if (std::ranges::find(values, value) == values.end()) values.push_back(std::move(value));
+  }
+  const std::string unit = numbers ? found.unit(k) : std::string();
+  return fmt::format("{}{}{}", fmt::join(values, ", "), unit.empty() ? "" : " ", unit);
+}
+
+MethodWords method(const StoredResult& result) {
+  const SweepResult& found = sweep_of(result);
+  std::vector<std::string> keys;
+  for (std::size_t k = 0; k < found.keys.size(); ++k) {
+    keys.push_back(fmt::format("{} = {}", found.keys[k], values_of_key(found, k)));
+  }
+  MethodWords words{
+      fmt::format("{} of the kind {} were compared, with these values: {}. All draw the same errors; other settings "
+                  "stated here are "
+                  "those of the first design.",
+                  counted(found.designs(), "design", "designs"), found.kind, fmt::join(keys, "; "))};
+  if (std::ranges::find(found.quantities, kYieldMerit) != found.quantities.end()) {
+    words.text += " Intervals of yields are those of Clopper and Pearson.";
+    words.sources.push_back(kClopperPearson);
+  }
+  if (std::ranges::any_of(found.is_paired.all(), [](std::uint8_t is) { return is != 0; })) {
+    words.text += " Intervals of differences of yields are those of paired shares (Agresti and Min).";
+    words.sources.push_back(kAgrestiMin);
+  }
+  return words;
+}
+
+/// A study cannot have this kind, so there is nothing to run.
 std::optional<StudyResult> run_nothing(const StudyRun&) { return std::nullopt; }
 
 /// Returns an empty outlook, because no study has the kind `sweep`. But every StudyKind needs such a function.
@@ -315,6 +350,7 @@ constinit const ReportKind kSweepReport{
     .tally = tally,
     .tables = sweep_tables,
     .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
+    .method = method,
     .answer = answer,
     .shown_cells = [](const StoredResult& result) { return shown_cells(result, 1); },
     .page = add_page,

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string_view>
+
+/// Publications of the methods, as BibTeX entries for papers that use a result.
+namespace poesy {
+
+/// Intervals of yields (stats/proportion.h).
+inline constexpr std::string_view kClopperPearson = R"(@article{clopper1934,
+  author = {Clopper, C. J. and Pearson, E. S.},
+  title = {The use of confidence or fiducial limits illustrated in the case of the binomial},
+  journal = {Biometrika},
+  volume = {26}, number = {4}, pages = {404--413}, year = {1934}
+}
+)";
+
+/// Intervals of differences of yields of the same machines (stats/proportion.h).
+inline constexpr std::string_view kAgrestiMin = R"(@article{agresti2005,
+  author = {Agresti, Alan and Min, Yongyi},
+  title = {Simple improved confidence intervals for comparing matched proportions},
+  journal = {Statistics in Medicine},
+  volume = {24}, number = {5}, pages = {729--740}, year = {2005}
+}
+)";
+
+/// Sensitivity indices at a pose and over the workspace (stats/indices.h).
+inline constexpr std::string_view kDu = R"(@article{du2022,
+  author = {Du, Xu and Wang, Bin and Zheng, Junqiang},
+  title = {Geometric Error Analysis of a 2{UPR}-{RPU} Over-Constrained Parallel Manipulator},
+  journal = {Machines},
+  volume = {10}, number = {11}, pages = {990}, year = {2022}
+}
+)";
+
+/// First-order and total indices from squared differences (stats/squared_differences.h).
+inline constexpr std::string_view kJansen = R"(@article{jansen1999,
+  author = {Jansen, Michiel J. W.},
+  title = {Analysis of variance designs for model output},
+  journal = {Computer Physics Communications},
+  volume = {117}, pages = {35--43}, year = {1999}
+}
+)";
+
+}  // namespace poesy
