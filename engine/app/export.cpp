@@ -1,9 +1,11 @@
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/app/command_line.h"
 #include "engine/app/results.h"
+#include "engine/app/shown_response.h"
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
@@ -16,16 +18,22 @@
 namespace poesy::app {
 namespace {
 
+constexpr std::size_t kMostNumber = 1'000'000;
+
 struct ExportOptions {
   std::string result;
   std::string folder;
   bool latex = false;
+  std::string response;
+  std::optional<std::size_t> top;
 };
 
 /// The tables that `poesy show` prints, with all columns, and the tables of the names of coordinates, errors and
 /// responses with their meanings.
-std::vector<Table> printed_tables(const StoredResult& result) {
-  std::vector<Table> tables = result_tables(kind_of(result).report, result, {default_ranking(result)});
+std::vector<Table> printed_tables(const ExportOptions& options, StoredResult& result) {
+  const std::string response = choose_response(options.response, options.result, result);
+  std::vector<Table> tables = result_tables(kind_of(result).report, result, {response});
+  if (options.top) keep_first(*options.top, tables);
   for (Table& table : name_tables(result)) {
     if (!table.rows.empty()) tables.push_back(std::move(table));
   }
@@ -33,9 +41,14 @@ std::vector<Table> printed_tables(const StoredResult& result) {
 }
 
 int export_result(const ExportOptions& options) {
-  const StoredResult result = read_result_with_warning(options.result);
-  const std::vector<std::string> files = options.latex ? write_latex(result, printed_tables(result), options.folder)
-                                                       : export_tables(result, options.folder);
+  StoredResult result = read_result_with_warning(options.result);
+  std::vector<std::string> files;
+  if (options.latex) {
+    const std::vector<Table> tables = printed_tables(options, result);
+    files = write_latex(result, tables, options.folder);
+  } else {
+    files = export_tables(result, options.folder);
+  }
   for (const std::string& file : files) print(printable_line(file) + "\n");
   return kDone;
 }
@@ -56,9 +69,19 @@ Command& add_export(Command& program) {
   const auto [command, options] = program.add_command("export", "write every table of a result as CSV", export_result);
   command.add_value("result", options.result, "RESULT.h5", "result file")->required();
   command.add_value("-d,--directory", options.folder, "DIR", "folder for the tables, made if missing")->required();
-  command.add_flag("--latex", options.latex, "the tables of poesy show as LaTeX (booktabs) instead");
+  auto* const latex =
+      command.add_flag("--latex", options.latex, "the tables of poesy show as LaTeX (booktabs) instead");
+  command
+      .add_value("--response", options.response, "RESPONSE",
+                 "response to rank by, or to show alone where nothing is ranked")
+      ->needs(latex);
+  command
+      .add_whole_number("--top", options.top, "N", "only the first N errors of a table that ranks them", 1, kMostNumber)
+      ->needs(latex);
   command.examples = {{"tables/global.csv and others", "poesy export result.h5 -d tables"},
-                      {"tables/ranking.tex and others", "poesy export result.h5 -d tables --latex"}};
+                      {"tables/ranking.tex and others", "poesy export result.h5 -d tables --latex"},
+                      {"the ten errors that matter most to one response",
+                       "poesy export result.h5 -d tables --latex --top 10 --response gap"}};
   return command;
 }
 

@@ -12,6 +12,7 @@
 
 #include "engine/app/command_line.h"
 #include "engine/app/results.h"
+#include "engine/app/shown_response.h"
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
@@ -46,16 +47,6 @@ struct ShowOptions {
   bool method = false;  ///< true to show the method in words instead of tables
 };
 
-/// The name of the response to show: `wanted`, or, if this is empty, the response by which errors are ranked by
-/// default. Throws InputError if the result lacks the response.
-std::string response_of(const std::string& wanted, const std::string& path, const StoredResult& result) {
-  if (wanted.empty()) return default_ranking(result);
-  const std::vector<std::string> known = names_of(result.responses);
-  if (std::ranges::find(known, wanted) != known.end()) return wanted;
-  throw InputError({path}, fmt::format("--response: no response '{}' in this result", printable(wanted)),
-                   fmt::format("it has {}", fmt::join(known, ", ")));
-}
-
 RowOrder order_of(const ShowOptions& options) {
   if (!options.sort) return RowOrder::effect;
   const auto at = std::ranges::find(kRowOrders, *options.sort);
@@ -63,8 +54,6 @@ RowOrder order_of(const ShowOptions& options) {
   throw InputError({}, fmt::format("--sort: '{}' is not an order of errors", printable(*options.sort)),
                    suggestion(*options.sort, kRowOrders));
 }
-
-bool ranks_errors(const StoredResult& result) { return kind_of(result).report.two_rankings != nullptr; }
 
 /// Throws InputError if --sort is given although the kind's errors have a fixed order, or --top although the result
 /// ranks no errors.
@@ -78,14 +67,8 @@ void check_ranks(const ShowOptions& options, const std::string& path, const Stor
   if (options.top && std::ranges::none_of(tables, &Table::ranked)) refuse("--top", "ranks no errors");
 }
 
-/// Makes this response the only one of the result's headline, so that tables show it alone.
-void show_alone(const std::string& response, StoredResult& result) {
-  const auto at = std::ranges::find(result.responses, response, &NamedUnit::name) - result.responses.begin();
-  result.headline = result.signed_headline = {static_cast<std::size_t>(at)};
-}
-
-/// Notes on the mechanism's numbers, warnings of what looks like a mistake in it, and, unless a table of errors was
-/// solved, on calibration and constant errors. Empty if this program cannot read the result's study.
+/// Notes on the mechanism's numbers and, unless a table of errors was solved, on calibration and constant errors. Empty
+/// if this program cannot read the result's study.
 std::string study_lines(const StoredResult& result, std::size_t width) {
   const std::optional<Study> study = study_in(result, registry());
   if (!study) return {};
@@ -120,8 +103,7 @@ int show_one(const ShowOptions& options) {
   const std::string& path = options.results.front();
   const RowOrder order = order_of(options);
   StoredResult result = read_result_with_warning(path);
-  const std::string response = response_of(options.response, path, result);
-  if (!options.response.empty() && !ranks_errors(result)) show_alone(response, result);
+  const std::string response = choose_response(options.response, path, result);
   const ReportKind& kind = kind_of(result).report;
   std::vector<Table> tables = result_tables(kind, result, {response, order});
   check_ranks(options, path, result, tables);

@@ -20,7 +20,9 @@ namespace {
 constexpr std::size_t kMostRowsOfAPage = 40;
 /// The largest number of columns that fit on a page. Tables with more columns leave out those that are dispensable.
 constexpr std::size_t kMostColumns = 9;
-constexpr std::size_t kFewColumns = 6;  ///< tables with at most this many columns are printed in the size of the text
+constexpr std::size_t kColumnWidth = 56;  ///< characters of \footnotesize in a line of a column of a journal (85 mm)
+constexpr std::size_t kColumnGap = 1;     ///< characters between two columns of a table
+constexpr std::size_t kFewColumns = 6;    ///< tables with at most this many columns are printed in the size of the text
 
 std::string_view escaped(char c) {
   switch (c) {
@@ -119,22 +121,123 @@ std::string latex_cell(const Cell& cell, Column::Kind kind) {
   return latex_number(cell.text).value_or(latex_text(cell.text));
 }
 
-/// Returns true if a paper prints a column. Of a table with many columns, dispensable columns and columns without
-/// content are not printed.
-bool is_printed(const Table& table, std::size_t c) {
-  if (table.columns.size() <= kMostColumns) return true;
-  if (table.columns[c].dispensable > 0) return false;
-  return std::ranges::any_of(table.rows, [c](const std::vector<Cell>& row) { return row[c].text != "-"; });
+std::string_view heading_of(const Column& column) { return column.heading.empty() ? column.name : column.heading; }
+
+/// The characters in the widest line of a table.
+std::size_t width_of(const Table& table) {
+  std::size_t width = 0;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const Column& column = table.columns[c];
+    std::size_t widest = text_width(heading_of(column)) + (column.unit.empty() ? 0 : column.unit.size() + 3);
+    for (const std::vector<Cell>& row : table.rows) widest = std::max(widest, text_width(row[c].text));
+    width += widest + (c == 0 ? 0 : kColumnGap);
+  }
+  return width;
 }
 
-/// The table, reduced to the columns that a paper prints.
-Table printed(const Table& table) {
+template <class Keep>
+Table with_columns(const Table& table, const Keep& keep) {
   Table made = table;
   for (std::size_t c = table.columns.size(); c-- > 0;) {
-    if (is_printed(table, c)) continue;
+    if (keep(c)) continue;
     const auto at = static_cast<std::ptrdiff_t>(c);
     made.columns.erase(made.columns.begin() + at);
     for (std::vector<Cell>& row : made.rows) row.erase(row.begin() + at);
+  }
+  return made;
+}
+
+/// The table without its most dispensable group of columns. Precondition: it has dispensable columns.
+Table without_a_group(const Table& table) {
+  const int last = std::ranges::max(table.columns, {}, &Column::dispensable).dispensable;
+  return with_columns(table, [&](std::size_t c) { return table.columns[c].dispensable < last; });
+}
+
+bool has_dispensable(const Table& table) {
+  return std::ranges::any_of(table.columns, [](const Column& column) { return column.dispensable > 0; });
+}
+
+/// The table without dispensable columns, the most dispensable first, until it fits in a column of a journal. If it
+/// does not fit even without all of them, it has all columns that fit on a page.
+Table fitted(const Table& table) {
+  Table narrow = table;
+  while (width_of(narrow) > kColumnWidth && has_dispensable(narrow)) narrow = without_a_group(narrow);
+  if (width_of(narrow) <= kColumnWidth || table.columns.size() > kMostColumns) return narrow;
+  return table;
+}
+
+/// Returns true if all names of a list "low, high" are among these.
+bool are_all_among(std::string_view list, std::span<const std::string> these) {
+  for (std::size_t from = 0; from < list.size();) {
+    const std::size_t end = std::min(list.find(", ", from), list.size());
+    if (std::ranges::find(these, list.substr(from, end - from)) == these.end()) return false;
+    from = end + 2;
+  }
+  return true;
+}
+
+/// The clauses of a note that speak of columns which are printed: "index: ...; low, high: ..." without columns low and
+/// high is "index: ...". A clause without names of columns goes with the clause before it.
+std::string note_of(const std::string& note, std::span<const std::string> left_out) {
+  std::string text;
+  bool speaks = true;
+  for (std::size_t from = 0; from < note.size();) {
+    const std::size_t end = std::min(note.find("; ", from), note.size());
+    const std::string clause = note.substr(from, end - from);
+    from = std::min(end + 2, note.size());
+    const std::size_t colon = clause.find(": ");
+    if (colon != std::string::npos) speaks = !are_all_among(std::string_view(clause).substr(0, colon), left_out);
+    if (speaks) text += (text.empty() ? "" : "; ") + clause;
+  }
+  return text;
+}
+
+/// The digits of a number from the first that is not zero: 3 in "-0.0204". Zeros before an exponent or at the end
+/// count.
+std::size_t significant_digits(std::string_view number) {
+  std::string digits(number.substr(0, number.find_first_of("eE")));
+  std::erase_if(digits, [](char c) { return c < '0' || c > '9'; });
+  const std::size_t first = digits.find_first_not_of('0');
+  return first == std::string::npos ? 0 : digits.size() - first;
+}
+
+/// Gives the numbers of a column with a decimal point as many digits as the one with the most has: "2.630" beside
+/// "2.683". Digits that are added are zeros which rounding had removed.
+void even_digits(Table& table, std::size_t c) {
+  std::size_t most = 0;
+  for (const std::vector<Cell>& row : table.rows) {
+    if (row[c].text.find('.') != std::string::npos) most = std::max(most, significant_digits(row[c].text));
+  }
+  for (std::vector<Cell>& row : table.rows) {
+    std::string& text = row[c].text;
+    const std::size_t digits = significant_digits(text);
+    if (!row[c].value || row[c].whole || digits == 0 || digits >= most) continue;
+    const std::string same = number_text(*row[c].value, static_cast<int>(most));
+    if (same != (text.starts_with('+') ? text.substr(1) : text)) continue;
+    const std::size_t end = std::min(text.find_first_of("eE"), text.size());
+    const std::string zeros(most - digits, '0');
+    text.insert(end, (text.find('.') == std::string::npos ? "." : "") + zeros);
+  }
+}
+
+/// The table as a paper prints it: its columns, notes on these, and even digits.
+Table printed(const Table& table) {
+  Table made = fitted(table);
+  if (table.columns.size() > kMostColumns) {
+    made = with_columns(made, [&, with_all = made](std::size_t c) {
+      return std::ranges::any_of(with_all.rows, [c](const std::vector<Cell>& row) { return row[c].text != "-"; });
+    });
+  }
+  std::vector<std::string> left_out;
+  for (const Column& column : table.columns) {
+    if (std::ranges::find(made.columns, heading_of(column), heading_of) == made.columns.end()) {
+      left_out.emplace_back(heading_of(column));
+    }
+  }
+  for (std::string& note : made.notes) note = note_of(note, left_out);
+  std::erase(made.notes, "");
+  for (std::size_t c = 0; c < made.columns.size(); ++c) {
+    if (made.columns[c].kind == Column::Kind::number) even_digits(made, c);
   }
   return made;
 }
@@ -149,8 +252,7 @@ std::string line_of(const Things& things, const Text& text) {
 std::string headings(const Table& table) {
   return line_of(table.columns, [&](std::size_t c) {
     const Column& column = table.columns[c];
-    return latex_text(column.heading.empty() ? column.name : column.heading) +
-           (column.unit.empty() ? "" : " [" + latex_unit(column.unit) + "]");
+    return latex_text(heading_of(column)) + (column.unit.empty() ? "" : " [" + latex_unit(column.unit) + "]");
   });
 }
 

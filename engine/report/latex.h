@@ -18,8 +18,9 @@ std::string latex_text(std::string_view text);
 
 /// A table as a `table` with the rules of the package booktabs, or as a `longtable` if it has too many rows for a page:
 /// caption, label "tab:NAME", headings with units, rows, notes. Numbers have the digits that `poesy show` prints, in
-/// LaTeX's mathematics mode: "$1.2\times10^{-5}$". If the table has more than nine columns, dispensable columns and
-/// empty columns are left out. The first line, a comment, names the packages that are needed.
+/// mathematics: "$1.2\times10^{-5}$", and in a column all as many. If the table is wider than a column of a journal,
+/// dispensable columns are left out until it fits, or all of them and empty columns if it has more than nine; notes on
+/// these columns are left out as well. The first line, a comment, names the packages that are needed.
 std::string latex_of(const Table& table);
 
 /// Tables of the pose coordinates, the errors and the responses of a result, with units and descriptions.

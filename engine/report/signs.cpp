@@ -21,6 +21,7 @@ std::string with_words(std::string_view text) {
   replace(words, kSphereDiameter, "sphere dia ");
   replace(words, kDiameter, "dia ");
   replace(words, kPlusMinus, "+-");
+  replace(words, kTimes, "x");
   for (const ZoneTraits& zone : zone_traits()) replace(words, zone.sign, zone.key);
   return words;
 }
@@ -51,6 +52,7 @@ std::vector<std::string> frame_boxes(std::string_view sign, std::string zone, st
 
 void use_words(std::span<Table> tables) {
   for (Table& table : tables) {
+    for (std::string& note : table.notes) note = with_words(note);
     for (auto& row : table.rows) {
       for (Cell& cell : row) cell.text = with_words(cell.text);
     }

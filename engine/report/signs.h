@@ -13,15 +13,12 @@ namespace poesy {
 inline constexpr std::string_view kDiameter = "\u2300";         ///< The sign before a diameter.
 inline constexpr std::string_view kSphereDiameter = "S\u2300";  ///< The sign before the diameter of a sphere.
 inline constexpr std::string_view kPlusMinus = "\u00b1";        ///< The sign before the tolerance of a distance.
+inline constexpr std::string_view kTimes = "\u00d7";            ///< The sign between two factors.
 
 /// The text with words in place of its signs: "position", "dia 0.02 mm", "+-0.01 mm".
 std::string with_words(std::string_view text);
 
-/// A text for the terminal with the signs of print: "→" for "->", "±" for "+-", and a minus sign before numbers ("−80
-/// mm"), at which a line does not break.
-std::string typographic(std::string_view text);
-
-/// Replaces signs by words in all cells of these tables.
+/// Replaces signs by words in all cells and notes of these tables.
 void use_words(std::span<Table> tables);
 
 /// The boxes of a tolerance frame, from left to right: the sign, the zone, and one box for each of the datums in "A|B".

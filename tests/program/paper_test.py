@@ -51,7 +51,7 @@ def plain(cell):
     """A cell of LaTeX as `poesy show --json` has it."""
     if cell == "--":
         return "-"
-    if re.fullmatch(r"\$[^$]*\$", cell):
+    if re.fullmatch(r"\$[^$]*\$", cell) and "\\times$" not in cell:
         number = cell[1:-1].replace("\\,", " ").replace("\\infty", "inf")
         times = re.fullmatch(r"(.*)\\times10\^\{(-?)(\d+)\}", number)
         return number if times is None else f"{times[1]}e{times[2] or '+'}{int(times[3]):02d}"
@@ -79,7 +79,56 @@ def printed(table, text):
     return kept
 
 
+def short(cell):
+    """A number without zeros at its end, because a column of a paper has as many digits in all rows."""
+    number = re.fullmatch(r"([+-]?\d+\.\d*?)0+(e.*)?", cell)
+    return cell if number is None else number[1].removesuffix(".") + (number[2] or "")
+
+
 class Paper(ProgramTest):
+    def check_columns(self, table, kept, rows):
+        """All numbers with a decimal point in a column have as many digits, except those that rounding left with fewer."""
+        for column, position in enumerate(kept):
+            cells = [plain(row[column]) for row in rows]
+            values = [row[table["columns"][position]["name"]] for row in table["rows"]]
+            if table["columns"][position]["kind"] != "number" or not any("." in cell for cell in cells):
+                continue
+            most = max(self.digits(cell) for cell in cells if "." in cell)
+            for cell, value in zip(cells, values):
+                if isinstance(value, float) and value != 0.0 and float(f"{value:.{most}g}") == float(cell.replace(" ", "")):
+                    self.assertGreaterEqual(self.digits(cell), most, (table["name"], cells))
+
+    @staticmethod
+    def digits(cell):
+        return len(re.sub(r"^0+", "", re.sub(r"\D", "", cell.split("e")[0])))
+
+    def check_rows(self, text):
+        """All rows, also that of the headings, have as many cells as the table has columns."""
+        columns = len(re.search(r"\\begin\{(?:tabular|longtable)\}\{([lr]+)\}", text)[1])
+        rows = [line for line in text.splitlines() if line.endswith(" \\\\") and not line.startswith("\\caption")]
+        self.assertGreater(len(rows), 0)
+        for row in rows:
+            self.assertEqual(len(re.findall(r"(?<!\\)&", row)), columns - 1, row)
+
+    def test_a_ranking_fits_in_one_column(self):
+        self.write("study.toml", MACHINES.replace('"monte-carlo"\ndraws = "per machine"', '"sensitivity"').replace("1500", "60")
+                   .replace('limits = { gap = "0.04 mm" }\n', ""))
+        self.succeeds("run", "study.toml", "--quiet")
+        self.succeeds("export", "study.h5", "-d", "tables", "--latex", "--top", "5", "--response", "angular_deformation")
+        text = (self.folder / "tables/ranked.tex").read_text()
+        self.assertEqual(len(rows_of(text)), 5)
+        self.check_rows(text)
+        self.assertIn("Effect of each error on angular\\_deformation", text)
+        self.assertIn("index $\\times$ sigma", text)
+        self.assertNotIn("published", text)  # neither the column nor the note on it
+        self.assertIn("low, high: its 95 \\% interval", text)
+        whole = json.loads(self.succeeds("show", "study.h5", "--json"))["tables"]
+        self.assertTrue(any("published: " in note for table in whole for note in table["notes"]))
+        self.assertLessEqual(set(re.findall(r"\\([A-Za-z]+)", text.split("\n", 1)[1])), COMMANDS)
+        done = self.poesy("export", "study.h5", "-d", "other", "--top", "5")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(b"--latex", done.stderr)
+
     def run_machines(self):
         self.write("study.toml", MACHINES)
         self.assertIn(self.poesy("run", "study.toml", "--quiet").returncode, (0, 6))
@@ -94,10 +143,10 @@ class Paper(ProgramTest):
             text = (self.folder / f"tables/{table['name']}.tex").read_text()
             rows = rows_of(text)
             kept = printed(table, text)
-            if len(table["columns"]) <= 9:
-                self.assertEqual(len(kept), len(table["columns"]))
-            self.assertEqual([[plain(cell) for cell in row] for row in rows], [[row[c] for c in kept] for row in table["shown"]],
-                             table["name"])
+            self.assertEqual([[short(plain(cell)) for cell in row] for row in rows],
+                             [[short(row[c]) for c in kept] for row in table["shown"]], table["name"])
+            self.check_columns(table, kept, rows)
+            self.check_rows(text)
             self.assertIn(f"\\label{{tab:{table['name']}}}", text)
             for environment in re.findall(r"\\begin\{(\w+)\}", text):
                 self.assertEqual(text.count(f"\\end{{{environment}}}"), 1)

@@ -182,18 +182,19 @@ Columns ranked_columns(const StoredResult& result, const RankedErrors& ranked) {
 }
 
 std::vector<std::string> ranked_notes(const StoredResult& result, const RankedErrors& ranked) {
-  return {fmt::format(
-              "index: scatter of {} per scatter of the error (standard deviations), mean over the poses plus spread "
-              "between them; low, high: its {:.3g} % interval",
-              result.responses[ranked.response].name, 100.0 * sensitivity_of(result).conf_level),
-          "published: the index as the literature estimates it, which counts the noise of sampling as spread between "
-          "poses; index is without that noise",
-          "effect: index x sigma, the scatter that an error of the study's sigma causes; the rank goes by it, because "
-          "indices per mm and per deg do not compare",
-          "at a tenth: what the index changes by if the error is a tenth as large, from the same draws; where it "
-          "changes, the index says something about the size studied and no other",
-          index_change_text(result, ranked.response),
-          "not converged: share of the samples whose solve did not settle"};
+  return {
+      fmt::format(
+          "index: scatter of {} per scatter of the error (standard deviations), mean over the poses plus spread "
+          "between them; low, high: its {:.3g} % interval",
+          result.responses[ranked.response].name, 100.0 * sensitivity_of(result).conf_level),
+      "published: the index as the literature estimates it, which counts the noise of sampling as spread between "
+      "poses; index is without that noise",
+      "effect: index \u00d7 sigma, the scatter that an error of the study's sigma causes; the rank goes by it, because "
+      "indices per mm and per deg do not compare",
+      "at a tenth: what the index changes by if the error is a tenth as large, from the same draws; where it "
+      "changes, the index says something about the size studied and no other",
+      index_change_text(result, ranked.response),
+      "not converged: share of the samples whose solve did not settle"};
 }
 
 /// A note on how the ranking changes with the points of the platform's metric; empty if the result does not contain
