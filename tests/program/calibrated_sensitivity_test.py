@@ -37,6 +37,16 @@ combinations.radius = { foot_x_1 = 1, foot_x_2 = 1, foot_x_3 = 1 }
 
 
 class CalibratedSensitivity(ProgramTest):
+    def test_advice_is_to_calibrate_what_calibration_removes(self):
+        self.ran(PLAIN)
+        self.succeeds("report", "r.h5", "-o", "plain.html")
+        page = (self.folder / "plain.html").read_text()
+        self.assertRegex(page, r"Calibrate \w+, \w+, \w+ and \d more \(100 % removable\)")
+        self.assertNotIn("to tight tolerances", page)
+        self.ran(PLAIN + CALIBRATION)
+        self.succeeds("report", "r.h5", "-o", "left.html")
+        self.assertNotIn("% removable).", (self.folder / "left.html").read_text())
+
     def setUp(self):
         super().setUp()
         for path in FILES.iterdir():

@@ -17,6 +17,7 @@
 #include "engine/kinds/sensitivity/tolerances.h"
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
+#include "engine/schema/settings.h"
 #include "engine/stats/tolerance.h"
 
 namespace poesy {
@@ -32,6 +33,9 @@ struct FewMatter {
 
 constexpr double kMost = 0.8;
 constexpr double kHardly = 0.01;
+/// The advice is to calibrate an error, instead of holding it to a tight tolerance, if calibration can remove more than
+/// this share of its effect.
+constexpr double kCalibrated = 0.9;
 
 /// Finds the errors that FewMatter lists; none if an effect is not known, or if no error has an effect.
 std::optional<FewMatter> few_matter(const StoredResult& result) {
@@ -87,9 +91,47 @@ std::string sure_text(const StoredResult& result, const RankedErrors& ranked) {
                      : fmt::format(" {} at other sizes.", counted(changing, "index is another", "indices are others")));
 }
 
-std::string advice(const std::optional<FewMatter>& few) {
+/// The errors with a large effect, by what can be done about it.
+struct Measures {
+  std::vector<std::string> calibrate;  ///< errors of which calibration can remove almost all
+  std::vector<std::string> hold;       ///< errors that need tight tolerances
+  double removable = 1.0;              ///< the smallest removable share among the errors to calibrate
+};
+
+/// Returns true if the indices are of what a calibration leaves.
+bool is_calibrated(const StoredResult& result) {
+  return study_setting(result.study_text, "analysis", "calibrated") == "true" ||
+         !study_setting(result.study_text, "analysis.calibration", "fit").empty();
+}
+
+Measures measures(const StoredResult& result, const std::vector<std::string>& names) {
+  const std::optional<SeparationResult> separation =
+      is_calibrated(result) ? std::nullopt : sensitivity_of(result).separation;
+  Measures found;
+  for (const std::string& name : names) {
+    const auto p =
+        static_cast<std::size_t>(std::ranges::find(result.factors, name, &NamedUnit::name) - result.factors.begin());
+    const double share = separation ? separation->removable(p) : 0.0;
+    (share > kCalibrated ? found.calibrate : found.hold).push_back(name);
+    if (share > kCalibrated) found.removable = std::min(found.removable, share);
+  }
+  return found;
+}
+
+/// "Calibrate zero_2, zero_1, zero_3 (100 % removable). Hold tilt_x to tight tolerances. "
+std::string measures_text(const Measures& found) {
   std::string text;
-  if (few && !few->names.empty()) text = fmt::format("Hold {} to tight tolerances. ", some_names(few->names, 3));
+  if (!found.calibrate.empty()) {
+    text = fmt::format("Calibrate {} ({}{} removable). ", some_names(found.calibrate, 3),
+                       found.calibrate.size() > 1 && found.removable < 1.0 ? "at least " : "",
+                       percent_text(found.removable));
+  }
+  if (!found.hold.empty()) text += fmt::format("Hold {} to tight tolerances. ", some_names(found.hold, 3));
+  return text;
+}
+
+std::string advice(const StoredResult& result, const std::optional<FewMatter>& few) {
+  std::string text = few ? measures_text(measures(result, few->names)) : std::string();
   if (few && !few->hardly.empty()) {
     text += fmt::format("{} may be loose: together below 1 % ({}). ", counted(few->hardly.size(), "error", "errors"),
                         some_names(few->hardly, 3));
@@ -148,7 +190,7 @@ Answer sensitivity_answer(const StoredResult& result) {
   }
   if (std::string where = worst_place_text(result); !where.empty()) lines.emplace_back("Where", std::move(where));
   lines.emplace_back("How sure", sure_text(result, ranked));
-  lines.emplace_back("What to do", advice(few));
+  lines.emplace_back("What to do", advice(result, few));
   return lines;
 }
 
