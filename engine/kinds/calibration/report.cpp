@@ -112,13 +112,25 @@ MethodWords method(const StoredResult& result) {
                       counted(found.measured_poses, "pose", "poses"), as_sentence(residual_text(found)))};
 }
 
+/// The fitted values, and the displacement that remains with them.
+std::string found_text(const CalibrationResult& found) {
+  constexpr std::size_t kMostValues = 6;
+  std::vector<std::string> values;
+  for (std::size_t n = 0; n < found.fitted.size(); ++n) {
+    values.push_back(found.fitted[n].name + " " + response_text(found.fitted[n], found.estimate(n)));
+  }
+  const std::vector<std::string> left = left_notes(found);
+  return fmt::format("fitted: {}{}", some_names(values, kMostValues), left.empty() ? "" : "; " + left.front());
+}
+
 /// If the measurements contradict the fitted errors, the answer says so first, because all else rests on them.
 Answer answer(const StoredResult& result) {
   const CalibrationResult& found = calibration_of(result);
   Answer lines;
   for (const std::string& warning : calibration_warnings(found)) lines.emplace_back("Caution", sentence(warning));
   if (const std::string kept = kept_text(found); !kept.empty()) lines.emplace_back("Limits", sentence(kept));
-  lines.emplace_back("Answer", measured_text(found) + ".");
+  lines.emplace_back("Answer", sentence(found_text(found)));
+  lines.emplace_back("Measured", sentence(measured_text(found)));
   lines.emplace_back("How sure", sentence(residual_text(found)));
   if (const std::string typed = typed_text(found); !typed.empty()) lines.emplace_back("What to do", sentence(typed));
   return lines;

@@ -110,9 +110,16 @@ std::vector<std::string> warnings(const ReportKind& kind, const ReportedResult& 
   return list;
 }
 
-std::string subtitle(const StoredResult& result) {
-  std::string text = fmt::format("{} of {}: ", result.kind, result.model);
-  if (!result.factors.empty()) text += counted(result.factors.size(), "error", "errors") + ", ";
+/// "41 errors, ", or "7 fitted errors, " if errors were fitted to measurements; empty if there are none.
+std::string errors_text(const ReportKind& kind, const StoredResult& result) {
+  if (result.factors.empty()) return {};
+  if (!kind.words(result).fitted) return counted(result.factors.size(), "error", "errors") + ", ";
+  const Comparable fitted = kind.comparable(result, result);
+  return counted(fitted.items.size(), fitted.item_word, fitted.item_word + "s") + ", ";
+}
+
+std::string subtitle(const ReportKind& kind, const StoredResult& result) {
+  std::string text = fmt::format("{} of {}: {}", result.kind, result.model, errors_text(kind, result));
   text += counted(result.poses.size(), "pose", "poses");
   const RunFacts& run = result.facts;
   text += fmt::format(", {}", counted_samples(run.samples(), run.by_series));
@@ -158,7 +165,7 @@ Page page_of(const ReportKind& kind, const ReportedResult& result) {
   Page page;
   const StoredResult& stored = result.stored;
   page.title = stored.title.empty() ? stored.model + ", " + stored.kind : stored.title;
-  page.subtitle = subtitle(result.stored);
+  page.subtitle = subtitle(kind, result.stored);
   page.answer = answer(kind, result.stored);
   page.warnings = warnings(kind, result);
   add_responses(result.stored, page);
