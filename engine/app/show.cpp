@@ -21,6 +21,7 @@
 #include "engine/report/display.h"
 #include "engine/report/merits.h"
 #include "engine/report/method.h"
+#include "engine/report/one_study.h"
 #include "engine/report/report_kind.h"
 #include "engine/report/signs.h"
 #include "engine/report/table.h"
@@ -172,6 +173,10 @@ ComparedResults compare(const ReportKind& kind, std::span<const ReportedResult> 
     if (!settings.rows.empty()) compared.tables.push_back(std::move(settings));
   }
   if (results.size() == 2) compare_two(kind, results, ranked, order, compared);
+  for (std::size_t n = 1; n < results.size(); ++n) {
+    std::string sweep = sweep_text(*stored[0], *stored[n], letter_of(n));
+    if (!sweep.empty()) compared.remarks.push_back(std::move(sweep));
+  }
   return compared;
 }
 

@@ -93,16 +93,17 @@ Cell change_cell(double change) {
 /// A row of the table of figures of merit: one figure of merit of one result. first: the same figure of merit of result
 /// A. result: index of the result.
 std::vector<Cell> row_of(const Merit& first, const Merit& merit, std::size_t result) {
-  std::vector<Cell> row{text_cell(merit.what),
-                        text_cell(merit.unit),
-                        text_cell(std::string(1, letter_of(result))),
-                        number_cell(merit.value, kDigits),
-                        number_cell(merit.low, kDigits),
-                        number_cell(merit.high, kDigits)};
   const MeritChange change = result == 0 ? MeritChange{} : change_of(first, merit);
-  row.insert(row.end(), {change_cell(change.value), change_cell(change.low), change_cell(change.high),
-                         text_cell(word_of(change.verdict))});
-  return row;
+  return {text_cell(merit.what),
+          text_cell(std::string(1, letter_of(result))),
+          text_cell(word_of(change.verdict)),
+          change_cell(change.value),
+          change_cell(change.low),
+          change_cell(change.high),
+          number_cell(merit.value, kDigits),
+          number_cell(merit.low, kDigits),
+          number_cell(merit.high, kDigits),
+          text_cell(merit.unit)};
 }
 
 /// The factor by which the number of samples must grow until the interval of this change excludes zero, if the change
@@ -191,11 +192,12 @@ std::optional<Table> merits_table(std::span<const std::vector<Merit>> results) {
   if (shared.empty()) return std::nullopt;
   Table table{.name = "merits",
               .caption = results.size() == 2 ? "Which is better: B against A" : "Which is better: each against A",
-              .columns = {text_column("quantity", "quantity"), text_column("unit", "unit"), text_column("result", "in"),
-                          number_column("value", "value"), number_column("low", "low", "", 1),
-                          number_column("high", "high", "", 1), number_column("change", "change"),
+              // A narrow page hides the last columns first.
+              .columns = {text_column("quantity", "quantity"), text_column("result", "in"),
+                          text_column("verdict", "verdict"), number_column("change", "change"),
                           number_column("change_low", "low", "", 1), number_column("change_high", "high", "", 1),
-                          text_column("verdict", "verdict")},
+                          number_column("value", "value"), number_column("low", "low", "", 1),
+                          number_column("high", "high", "", 1), text_column("unit", "unit")},
               .notes = {"low, high: intervals of the value, and of its change as if both results were drawn "
                         "independently; common draws make it wider than it need be"}};
   for (const std::string& what : shared) {

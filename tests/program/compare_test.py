@@ -68,9 +68,20 @@ class Compare(ProgramTest):
         self.succeeds("report", "a.h5", "b.h5", "-o", "two.html")
         page = (self.folder / "two.html").read_text()
         self.assertIn("B is better: the yield is ", page)
+        self.assertIn("A and B differ in keys of one study (errors.angular): 'poesy sweep' judges the same machines", text)
         self.succeeds("report", *self.results, "-o", "three.html")
         page = (self.folder / "three.html").read_text()
         self.assertIn("A and C are not told apart: the yield is ", page)
+
+    def test_equal_warnings_are_one(self):
+        for name in ("a", "b"):
+            study = (self.folder / f"{name}.toml").read_text()
+            self.write(f"{name}.toml", study.replace('model = "2upr-rpu"', 'model = "2upr-rpu"\nfidelity = "first-order"'))
+            self.succeeds("run", f"{name}.toml", "--quiet")
+        self.succeeds("report", "a.h5", "b.h5", "-o", "two.html")
+        page = (self.folder / "two.html").read_text()
+        self.assertEqual(page.count("The model was solved to first order in the errors."), 1)
+        self.assertIn("A and B: The model was solved to first order in the errors.", page)
 
     def test_mechanisms_of_two_names(self):
         printer = (Path(os.environ["POESY_DATA"]) / "mechanisms/delta6.toml").read_text()

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
@@ -255,6 +256,21 @@ void add_two(const ReportKind& kind, const ReportedResult& a, const ReportedResu
   }
 }
 
+/// The warnings of several results. Those of equal text are one: "A and B: The model was solved to first order ...".
+std::vector<std::string> common_warnings(const ReportKind& kind, std::span<const ReportedResult> results) {
+  std::vector<std::pair<std::string, std::vector<char>>> list;  // texts, each with the letters of its results
+  for (std::size_t n = 0; n < results.size(); ++n) {
+    for (std::string& text : warnings(kind, results[n])) {
+      auto at = std::ranges::find(list, text, [](const auto& one) { return one.first; });
+      if (at == list.end()) at = list.insert(list.end(), {std::move(text), {}});
+      if (at->second.empty() || at->second.back() != letter_of(n)) at->second.push_back(letter_of(n));
+    }
+  }
+  std::vector<std::string> texts;
+  for (const auto& [text, letters] : list) texts.push_back(fmt::format("{}: {}", fmt::join(letters, " and "), text));
+  return texts;
+}
+
 /// The page of a report that compares two or more results.
 Page comparison_page(const ReportKind& kind, std::span<const ReportedResult> results) {
   const ReportedResult& a = results.front();
@@ -265,11 +281,9 @@ Page comparison_page(const ReportKind& kind, std::span<const ReportedResult> res
     check_comparable(a.stored, a.path, results[n].stored, results[n].path);
     page.subtitle +=
         fmt::format("{}{}: {} of {}", n == 0 ? "" : "; ", letter_of(n), name_of(results[n]), results[n].stored.model);
-    for (const std::string& one : warnings(kind, results[n])) {
-      page.warnings.push_back(fmt::format("{}: {}", letter_of(n), one));
-    }
     stored.push_back(&results[n].stored);
   }
+  page.warnings = common_warnings(kind, results);
   const std::vector<std::vector<Merit>> found = compared_merits(kind, stored);
   page.answer = merits_answer(found);
   add_merits(results, found, page);

@@ -1,0 +1,37 @@
+#include "engine/report/one_study.h"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "engine/report/display.h"
+#include "engine/report/merits.h"
+
+namespace poesy {
+namespace {
+
+bool has_yield(const StoredResult& result) { return result.verdicts && result.verdicts->yield; }
+
+/// The keys that have different values in two studies; none if a key is in only one of them.
+std::vector<std::string> keys_that_differ(const StoredResult& a, const StoredResult& b) {
+  std::vector<std::string> keys;
+  for (const std::vector<Cell>& row : settings_table(a, b, 1, false).rows) {
+    if (row[1].text == "-" || row[2].text == "-") return {};
+    if (!row[0].text.starts_with("run.")) keys.push_back(row[0].text);
+  }
+  return keys;
+}
+
+}  // namespace
+
+std::string sweep_text(const StoredResult& a, const StoredResult& b, char letter) {
+  if (!has_yield(a) || !has_yield(b) || a.model != b.model || a.mechanism_text != b.mechanism_text) return {};
+  const std::vector<std::string> keys = keys_that_differ(a, b);
+  if (keys.empty()) return {};
+  return fmt::format(
+      "A and {} differ in keys of one study ({}): 'poesy sweep' judges the same machines in both, which makes the "
+      "interval of the difference narrower.",
+      letter, some_names(keys));
+}
+
+}  // namespace poesy
