@@ -309,6 +309,10 @@ leg_2 = { distribution = "uniform", half_width = "0.03 mm", mean = "-0.05 mm" }
         self.write("linear-delta-drawing.toml", (MECHANISMS / "linear-delta-drawing.toml").read_text())
         self.write("study.toml", DRAWING)
         self.assertIn(self.poesy("run", "study.toml", "--quiet").returncode, (0, 6))
+        shown = " ".join(self.succeeds("show", "study.h5").split())
+        self.assertIn("margin: chance may make these machines look better than all are, so at least 9", shown)
+        self.succeeds("export", "study.h5", "-d", "csv")
+        self.assertRegex((self.folder / "csv/factors.csv").read_text(), r"^factor,start_sigma")
         words = " ".join(self.succeeds("show", "study.h5", "--method").split())
         for said in ("Features of the drawing scatter in their zones (distribution = normal, sigmas = 3).",
                      "The wanted yield is 95 %."):

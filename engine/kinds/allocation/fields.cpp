@@ -418,9 +418,19 @@ CsvTable certificate_failures(const Result& found) {
            list_column("status", list, [](const Failure& failure) { return failure.failed.status; })}};
 }
 
+/// Adds the tables of the errors. Their standard deviations are called start_sigma, because they are those with which
+/// the search began; part_table() has those that were found.
+void append_start_sigma(CsvTables& tables, const StoredResult& result) {
+  const std::size_t factors = tables.size();
+  append_sigma_tables(tables, result);
+  for (auto& column : tables[factors].columns) {
+    if (column.heading.starts_with("sigma")) column.heading.insert(0, "start_");
+  }
+}
+
 void append_tables(CsvTables& tables, const StoredResult& result) {
   const Result& found = allocation_of(result);
-  append_sigma_tables(tables, result);
+  append_start_sigma(tables, result);
   tables.push_back(part_table(found));
   if (found.has_zones()) tables.push_back(drawing_csv(found));
   if (!found.error_mean_square_share.empty()) tables.push_back(error_table(result));

@@ -96,7 +96,7 @@ void add_costs(const StoredResult& result, std::span<const Table> tables, Page& 
     add_figure(page, section, "cost-of-yield",
                cost_lines("yield_cost", {"yield", "%", pool.add("curve_yield", found.curve_yield, 0.01)},
                           found.curve_yield_cost, {"asked for", 100.0 * found.wanted_yield}, pool),
-               "Predicted cost over the yield that is asked for.");
+               "Predicted cost over the yield that is asked for, and would be certified with the same margin.");
     section.table(tables, "cost_of_yield");
   }
   if (!found.curve_factor.empty()) {

@@ -25,6 +25,17 @@ constexpr int kFullDigits = 6;  ///< digits of a tolerance that is shown in full
 
 std::string cost_text(double cost) { return number_text(cost, kCostDigits); }
 
+/// A sentence on why the yield is above the wanted one.
+std::string margin_text(const Result& found) {
+  const YieldVerdict& shown = found.certificate;
+  const double least = 1.0 - share_of(found.certificate_most, shown.machines);
+  return fmt::format(
+      "margin: chance may make these machines look better than all are, so at least {} of them have to be good to show "
+      "{} with {} confidence; tolerances were found with a further margin, so that fresh machines pass as a "
+      "rule",
+      percent_text(least), percent_text(shown.asked), percent_text(shown.conf_level));
+}
+
 /// The table of the certificate.
 Table certificate_table(const StoredResult& result) {
   const Result& found = allocation_of(result);
@@ -34,6 +45,7 @@ Table certificate_table(const StoredResult& result) {
       "fresh machines: drawn with the seed {}, which nothing before used; how many was set before; a machine that is "
       "not solved at a pose is rejected",
       found.certificate_seed));
+  if (found.certified()) table.notes.push_back(margin_text(found));
   if (found.calibrated) table.notes.push_back(fmt::format("limits are on {}", kLeftByCalibration));
   return table;
 }
@@ -351,7 +363,11 @@ void add_costs(const Result& found, std::span<const double> costs, FilledColumn 
 void append_curves(const Result& found, std::vector<Table>& tables) {
   if (!has_costs(found)) return;
   if (!found.curve_yield.empty()) {
-    Table table{.name = "cost_of_yield", .caption = "What another yield would cost", .columns = {}};
+    Table table{.name = "cost_of_yield",
+                .caption = "What another yield would cost",
+                .columns = {},
+                .notes = {"yield: what a study would ask for and certify with the same margin, so that more of its "
+                          "machines would be good"}};
     add_costs(found, found.curve_yield_cost, share_column("yield", "yield", found.curve_yield), table);
     tables.push_back(std::move(table));
   }
