@@ -8,7 +8,7 @@ import warnings
 from pathlib import Path
 
 import numpy as np
-from package import FolderTest, main, poesy, result, study
+from package import ROOT, FolderTest, main, poesy, result, study
 
 
 def shown(found, *options):
@@ -196,6 +196,12 @@ class Numbers(FolderTest):
         self.assertEqual({offset: verdict(value + offset)[0] for offset in offsets}, offsets)
         for step in range(-6, 7):
             verdict(value + 0.005 * step)
+
+    def test_no_verdict_without_a_wanted_yield(self):
+        analysis = {"kind": "monte-carlo", "draws": "per machine", "samples": 200, "limits": {"gap": "0.07 mm"}}
+        self.assertIsNone(poesy.run(study(analysis, poses=2)).verdict)
+        page = (ROOT / "engine" / "python" / "README.md").read_text(encoding="utf-8")
+        self.assertIn("or limits on machines without a wanted `yield`", page)
 
 
 class Tables(unittest.TestCase):
