@@ -1,6 +1,8 @@
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +11,7 @@
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "engine/storage/file_writer.h"
 
 namespace poesy::app {
@@ -19,6 +22,7 @@ struct FigureOptions {
   std::string figure;
   std::string response;
   std::string size = "85mm";
+  std::string python;
 };
 
 /// The Python program that draws the figure. It calls the command `figure` of the Python package poesy, and reports an
@@ -42,6 +46,15 @@ bool may_be_replaced(const std::string& path) {
   return content && (content->empty() || content->find("atplotlib") != std::string::npos);
 }
 
+constexpr const char* kPythonVariable = "POESY_PYTHON";
+
+/// The Python that draws: that of the option, of the environment, or python3.
+std::string python_of(const FigureOptions& options) {
+  if (!options.python.empty()) return options.python;
+  const char* const named = std::getenv(kPythonVariable);
+  return named == nullptr || *named == '\0' ? "python3" : named;
+}
+
 /// Replaces this process by Python, so the exit code is that of Python.
 int figure(const FigureOptions& options) {
   const std::string path = check_output_path(options.figure, {"figure", may_be_replaced}, {{options.result}});
@@ -49,15 +62,17 @@ int figure(const FigureOptions& options) {
   std::fflush(stdout);
   // A path that begins with a dash must not be read as an option.
   const auto plain = [](const std::string& name) { return name.starts_with('-') ? "./" + name : name; };
-  std::vector<std::string> words{"python3",  "-c",        kDraw,    plain(options.result),
+  const std::string python = python_of(options);
+  std::vector<std::string> words{python,     "-c",        kDraw,    plain(options.result),
                                  "--output", plain(path), "--size", options.size};
   if (!options.response.empty()) words.insert(words.end(), {"--response", options.response});
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  ::execvp("python3", arguments.data());
-  throw InputError({.file = path}, "is not drawn: no python3 is on PATH",
-                   "install it, and the package poesy for Python (./quickstart python)");
+  ::execvp(python.c_str(), arguments.data());
+  throw InputError(
+      {.file = path}, fmt::format("is not drawn: {} cannot be started", printable(python)),
+      "install it with the package poesy for Python (./quickstart python), or name a Python with --python");
 }
 
 }  // namespace
@@ -70,8 +85,11 @@ Command& add_figure(Command& program) {
   command.add_value("--response", options.response, "NAME",
                     "response, or a sweep's figure of merit; default: the one of poesy show");
   command.add_value("--size", options.size, "WIDTH", "width; default: 85mm, one column of a journal; 170mm are two");
+  command.add_value(
+      "--python", options.python, "PATH",
+      fmt::format("the Python that draws; default: that of the variable {}, or python3", kPythonVariable));
   command.notes = {
-      "python3 on PATH draws it; it needs the package poesy (./quickstart python, or python3-poesy) and matplotlib."};
+      "Python draws it; it needs the package poesy (./quickstart python, or python3-poesy) and matplotlib."};
   command.examples = {
       {"one column wide", "poesy figure result.h5 -o figure.pdf"},
       {"the page's width", "poesy figure result.h5 -o figure.svg --size 170mm --response tip_position"}};

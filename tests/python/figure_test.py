@@ -58,6 +58,13 @@ class Figures(FolderTest):
         self.assertEqual([text.get_text() for text in axes.get_yticklabels()], [row.name for row in ranked])
         np.testing.assert_array_equal([bar.get_width() for bar in axes.patches], [row.effect for row in ranked])
 
+    def test_the_axis_says_how_many_are_left_out(self):
+        found = result("sensitivity")
+        ranked = len(found.ranking().rows)
+        self.assertGreater(ranked, 15)
+        label = " ".join(poesy.figure(found).axes[0].get_xlabel().split())
+        self.assertTrue(label.endswith(f": the first 15 of {ranked}"), label)
+
     def test_widths(self):
         for size, expected in (("85mm", 85.0), ("170 mm", 170.0), ("8.5 cm", 85.0), (100, 100.0), ("4in", 101.6)):
             poesy.figure(result("sensitivity"), "figure.svg", size=size)
@@ -109,13 +116,16 @@ class Figures(FolderTest):
             self.assertEqual(done.returncode, code, done.stderr)
             self.assertIn(said, done.stderr)
 
-    def program(self, *words, python=True, path="bin"):
+    def program(self, *words, python=True, path="bin", named=None):
         """poesy figure, where `python3` is this interpreter, with the package or without."""
         Path("bin").mkdir(exist_ok=True)
         link = Path("bin/python3")
         if not link.is_symlink():
             link.symlink_to(sys.executable)
         environment = {**os.environ, "PATH": path}
+        environment.pop("POESY_PYTHON", None)
+        if named is not None:
+            environment["POESY_PYTHON"] = named
         if not python:
             environment.pop("PYTHONPATH")
         return subprocess.run([PROGRAM, "figure", *words], capture_output=True, text=True, check=False, env=environment)
@@ -131,6 +141,9 @@ class Figures(FolderTest):
         self.command("study.h5", "-o", "other.pdf", *words[3:])
         self.assertEqual(drawn, Path("other.pdf").read_bytes())
         self.assertEqual(self.program(*words).returncode, 0)  # replaces its own
+        self.assertEqual(self.program(*words, path="none", named=sys.executable).returncode, 0)
+        done = self.program(*words, "--python", sys.executable, path="none", named="none/python")
+        self.assertEqual(done.returncode, 0, done.stderr)
         Path("mine.pdf").write_bytes(b"mine")
         for words, code, said, how in [
             (("none.h5", "-o", "f.pdf"), 3, "none.h5", {}),
@@ -139,7 +152,8 @@ class Figures(FolderTest):
             (("study.h5", "-o", "study.h5"), 2, "study.h5", {}),
             (("study.h5", "-o", "f.pdf", "--response", "x"), 2, "no response 'x'", {}),
             (("study.h5", "-o", "f.pdf"), 2, "cannot import poesy; activate the environment of ./quickstart python", {"python": False}),
-            (("study.h5", "-o", "f.pdf"), 2, "no python3 is on PATH", {"path": "none"}),
+            (("study.h5", "-o", "f.pdf"), 2, "python3 cannot be started", {"path": "none"}),
+            (("study.h5", "-o", "f.pdf", "--python", "none/python"), 2, "none/python cannot be started", {}),
         ]:
             with self.subTest(words=words, how=how):
                 done = self.program(*words, **how)

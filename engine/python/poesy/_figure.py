@@ -140,8 +140,14 @@ def _drawing(result: Result, response: str | None) -> tuple[Callable[[Axes], obj
         return (lambda axes: _residuals(result, axes)), (lambda width: 0.7 * min(width, 120.0))
     if result.kind in ("coupling", "evaluate"):
         return (lambda axes: plot.field(response, ax=axes)), (lambda width: 0.75 * min(width, 120.0))
-    bars = min(len(result.ranking(response).rows), _MOST_BARS)
-    return (lambda axes: plot.ranking(response, top=_MOST_BARS, ax=axes)), (lambda _: 14.0 + 4.2 * bars)
+    ranked = len(result.ranking(response).rows)
+
+    def ranking(axes: Axes) -> None:
+        plot.ranking(response, top=_MOST_BARS, ax=axes)
+        if ranked > _MOST_BARS:
+            axes.set_xlabel(f"{axes.get_xlabel()}: the first {_MOST_BARS} of {ranked}")
+
+    return ranking, (lambda _: 14.0 + 4.2 * min(ranked, _MOST_BARS))
 
 
 def _residuals(result: Result, axes: Axes) -> None:
