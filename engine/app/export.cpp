@@ -1,5 +1,12 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -40,6 +47,26 @@ std::vector<Table> printed_tables(const ExportOptions& options, StoredResult& re
   return tables;
 }
 
+/// The tables to open first, the most important first, of those kinds of study that write many. The response that ranks
+/// follows a name that ends in '_'.
+constexpr std::array<std::string_view, 8> kFirstTables{"yield",       "global", "sobol_",  "mean_square_share",
+                                                       "tolerances_", "limits", "overall", "index_change"};
+constexpr std::size_t kManyFiles = 20;  ///< with more files, the program names those to open first
+constexpr std::size_t kFirstFiles = 3;
+
+/// "309 files; open these first: t/global.csv, t/tolerances_gap.csv, t/index_change.csv"
+std::string first_files_text(const StoredResult& result, const std::vector<std::string>& files) {
+  std::vector<std::string> first;
+  for (const std::string_view table : kFirstTables) {
+    const std::string name =
+        fmt::format("{}{}.csv", table, table.ends_with('_') ? default_ranking(result) : std::string());
+    const auto at = std::ranges::find(
+        files, name, [](const std::string& file) { return std::filesystem::path(file).filename().string(); });
+    if (at != files.end() && first.size() < kFirstFiles) first.push_back(printable(*at));
+  }
+  return fmt::format("{} files{}{}", files.size(), first.empty() ? "" : "; open these first: ", fmt::join(first, ", "));
+}
+
 int export_result(const ExportOptions& options) {
   StoredResult result = read_result_with_warning(options.result);
   std::vector<std::string> files;
@@ -48,6 +75,7 @@ int export_result(const ExportOptions& options) {
     files = write_latex(result, tables, options.folder);
   } else {
     files = export_tables(result, options.folder);
+    if (files.size() > kManyFiles) say(Message::note, first_files_text(result, files));
   }
   for (const std::string& file : files) print(printable_line(file) + "\n");
   return kDone;

@@ -74,6 +74,18 @@ class Exports(Csv):
         self.assertIn(b"name another folder with -d", done.stderr)
         self.assertEqual({path.name: path.read_bytes() for path in (self.folder / "both").iterdir()}, before)
 
+    def test_says_which_of_many_files_to_open(self):
+        self.write("a.toml", STUDY)
+        self.succeeds("run", "a.toml", "--quiet")
+        done = self.poesy("export", "a.h5", "-d", "t")
+        files = done.stdout.decode().split()
+        self.assertGreater(len(files), 20)
+        first = done.stderr.decode()
+        self.assertRegex(first, f"^poesy: {len(files)} files; open these first: t/global.csv, ")
+        named = first.strip().split(": ")[-1].split(", ")
+        self.assertEqual(len(named), 3)
+        self.assertLessEqual(set(named), set(files))
+
     def test_other_files_of_the_same_result_stay(self):
         self.write("a.toml", STUDY)
         self.succeeds("run", "a.toml", "--quiet")
