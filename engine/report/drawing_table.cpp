@@ -25,10 +25,9 @@ std::string zone_text(const std::string& key, double size, const std::string& da
 
 /// Returns true if an error belongs to a feature. q: position of the feature in the result.
 bool is_of_feature(const DrawingResult& drawing, std::size_t q, const std::string& error) {
-  const std::string& label = drawing.label(q);
-  const std::string limb = drawing.names[q].substr(std::min(label.size(), drawing.names[q].size()));
-  return std::ranges::any_of(
-      kDirections, [&](std::string_view direction) { return error == fmt::format("{}{}{}", label, direction, limb); });
+  return std::ranges::any_of(kFeatureDirections, [&](std::string_view direction) {
+    return error == feature_error_name(drawing.label(q), direction, drawing.limb(q));
+  });
 }
 
 /// The number of errors of a feature that are measured. q: position of the feature in the result.

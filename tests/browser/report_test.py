@@ -84,6 +84,7 @@ class PageTest(unittest.TestCase):
         self.browser.run("dispatchEvent(new Event('beforeprint'))")
         self.assertLessEqual(self.browser.printed_width(PAPER), PAPER)
         self.assertEqual(self.small_on_paper(), [])
+        self.assertEqual(self.loose_notes(), [])
 
     def check_silent(self, page):
         self.assertEqual(self.browser.console(), [])

@@ -113,25 +113,16 @@ std::string parts_lines(const Study& study) {
   return text;
 }
 
-/// A commented line of a template that names the first two limbs as an example of the key identical_limbs. Empty if the
-/// mechanism has fewer than two limbs.
-std::string shown_limbs(const ModelDescription& model) {
-  std::set<std::size_t> limbs;
-  for (const Factor& factor : model.factors) limbs.insert(factor.limb);
-  if (limbs.size() < 2) return {};
-  return fmt::format("# identical_limbs = [{}, {}]\n", *limbs.begin(), *std::next(limbs.begin()));
-}
-
 /// A line of a template with the key identical_limbs for all limbs that have features of one name, which share a
-/// tolerance in most drawings. If there are none, the line of shown_limbs().
-std::string alike_limbs(const ModelDescription& model) {
+/// tolerance in most drawings. If there are none, the line of shown_identical_limbs().
+std::string limbs_with_alike_features(const Study& study) {
   std::map<std::string, std::set<std::size_t>> limbs_of;
-  for (const Feature& feature : model.features) limbs_of[feature.label].insert(feature.limb);
+  for (const Feature& feature : study.model().features) limbs_of[feature.label].insert(feature.limb);
   std::set<std::size_t> alike;
   for (const auto& [label, limbs] : limbs_of) {
     if (limbs.size() > 1) alike.insert(limbs.begin(), limbs.end());
   }
-  if (alike.empty()) return shown_limbs(model);
+  if (alike.empty()) return shown_identical_limbs(study);
   return fmt::format("identical_limbs = [{}]\n", fmt::join(alike, ", "));
 }
 
@@ -154,7 +145,7 @@ std::string shown_zone_block(const Study& study) {
   return fmt::format(
       "\n[[analysis.parts]]\nzones = \"all\"\neach = true\n{}cost = {{ law = \"reciprocal\", b = 1, unit = \"{}\" "
       "}}\n# bounds = [{}, {}]\n",
-      alike_limbs(model), display_unit(Dimension::length).name, example_size(Dimension::length, 0.01),
+      limbs_with_alike_features(study), display_unit(Dimension::length).name, example_size(Dimension::length, 0.01),
       example_size(Dimension::length, 1.0));
 }
 
