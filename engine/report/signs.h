@@ -18,6 +18,9 @@ inline constexpr std::string_view kTimes = "\u00d7";            ///< The sign be
 /// The text with words in place of its signs: "position", "dia 0.02 mm", "+-0.01 mm".
 std::string with_words(std::string_view text);
 
+/// The text with the signs of print: a minus before numbers, arrows, and plus-minus. Browsers break no line at them.
+std::string typographic(std::string_view text);
+
 /// Replaces signs by words in all cells and notes of these tables.
 void use_words(std::span<Table> tables);
 

@@ -116,7 +116,7 @@ std::vector<FeatureError> errors_of(const FeatureLines& lines, const Feature& fe
   std::vector<FeatureError> all = all_errors(feature.kind, feature.size);
   const bool only_turns = feature.orientation && !feature.location;
   std::erase_if(all, [&](const FeatureError& error) {
-    const bool is_within_planes = feature.one_direction && !error.name.ends_with(lines.along);
+    const bool is_within_planes = feature.one_direction && !name(error.direction).ends_with(lines.along);
     return is_within_planes || (only_turns && !error.is_tilt);
   });
   return all;
