@@ -92,7 +92,7 @@ void shorten_tables_of_errors(std::vector<Table>& tables) {
   constexpr std::size_t kShown = 20;
   for (Table& table : tables) {
     const bool of_errors = table.name == "first_order" || table.name == "mean_square_shares";
-    if (!of_errors || table.rows.size() <= kShown) continue;
+    if (!of_errors || !table.ranked || table.rows.size() <= kShown) continue;
     keep_first(kShown, std::span(&table, 1));
     table.notes.back() += "; --top N shows more, --json all";
   }

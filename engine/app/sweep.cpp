@@ -121,8 +121,8 @@ void warn_of_designs(std::span<const SweptDesign> designs) {
     }
   }
   if (said.size() <= kMost) return;
-  say(Message::warning, fmt::format("{} more warnings are of other designs; 'poesy check' prints those of one study",
-                                    said.size() - kMost));
+  say(Message::warning,
+      fmt::format("{} more warnings are not shown; 'poesy check' prints those of one study", said.size() - kMost));
 }
 
 /// The identity of a sweep, by which a checkpoint is recognised: that of the first design, but with the studies and the

@@ -10,6 +10,9 @@ namespace poesy {
 /// The text that describes the responses of a calibrated study to users, as a noun phrase.
 inline constexpr std::string_view kLeftByCalibration =
     "what the best correction of the actuators leaves, with drive offsets chosen anew at each pose; no real "
+    "calibration is so good";
+no real
+    "
     "calibration "
     "is so good";
 

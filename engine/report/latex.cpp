@@ -128,7 +128,7 @@ std::size_t width_of(const Table& table) {
   std::size_t width = 0;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const Column& column = table.columns[c];
-    std::size_t widest = text_width(heading_of(column)) + (column.unit.empty() ? 0 : column.unit.size() + 3);
+    std::size_t widest = text_width(heading_of(column)) + (column.unit.empty() ? 0 : text_width(column.unit) + 3);
     for (const std::vector<Cell>& row : table.rows) widest = std::max(widest, text_width(row[c].text));
     width += widest + (c == 0 ? 0 : kColumnGap);
   }

@@ -129,8 +129,7 @@ std::string remedy_text(const Merit& first, const Merit& merit, std::size_t resu
                                                   "as large as this one",
                                                   number_text(times, 2)));
   }
-  if (merit.what != kYieldMerit) return text;
-  return text + "; fewer do if the designs differ by keys of one study: poesy sweep gives them the same machines";
+  return text;
 }
 
 }  // namespace

@@ -25,9 +25,8 @@ double max_not_converged(const StoredResult& result) {
 /// The warning if more than kManyNotConverged of all solves did not converge, unless kMissing applies.
 constexpr std::string_view kDoubt =
     " That is more than 1 %: all numbers come from the solved samples, and both ways of treating such solves are wrong "
-    "where they "
-    "are many. Left out, they make numbers too small, because they are mostly the large errors; included, they fill "
-    "them with unfinished iterates.";
+    "where they are many. Left out, they make numbers too small, because they are mostly the large errors; included, "
+    "they fill them with unfinished iterates.";
 
 /// The warning if more than kManyNotConverged of all solves did not converge, and most of these cannot be assembled.
 constexpr std::string_view kMissing =

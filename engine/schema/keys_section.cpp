@@ -145,7 +145,9 @@ double StudyValue::quantity_of(const std::string& written, Dimension dimension) 
     const Quantity quantity = parse_quantity(written, dimension);
     if (quantity.dimension == dimension) return quantity.si;
   } catch (const QuantityError& reason) {
-    if (!range_sign(written).empty()) fail("is the range '" + written + "'", "write one number, or a half_width");
+    if (!range_sign(written).empty())
+      fail("is the range '" + written + "'",
+           "write one number; a distribution takes the +- of a drawing as half_width");
     fail(std::string("cannot be read: ") + reason.what(), unit_remedy(written, dimension));
   }
   fail("is '" + written + "', but must be " + with_article(dimension), "write it like " + example(dimension));

@@ -8,9 +8,9 @@
 #include "engine/study/study.h"
 #include "engine/study/table_file.h"
 
-/// Checks of numbers in tables that state no unit in their first line. Such numbers are read as SI. If the numbers look
-/// as if the user meant another unit, each function returns a warning that begins with the table's name; otherwise it
-/// returns an empty text.
+/// Checks of numbers in tables. Numbers without a unit in the first line are read as SI. If numbers look as if the user
+/// meant another unit or sign, each function returns a warning that begins with the table's name; otherwise it returns
+/// an empty text.
 namespace poesy {
 
 /// Warns of poses outside the mechanism's workspace, also if the table states units: a sign may be lost. poses: the

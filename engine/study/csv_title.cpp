@@ -60,7 +60,8 @@ void check_cell_count(const std::vector<CsvCell>& cells, std::size_t columns) {
     throw InputError(first.place, "this line is blank", "remove it; blank lines may only be at the end");
   }
   if (first.text.starts_with('#')) {
-    throw InputError(first.place, "this line begins with '#', but tables have no comments", "remove it");
+    throw InputError(first.place, "this line begins with '#', but tables have no comments",
+                     fmt::format("remove it, or write {} cells", columns));
   }
   const Place line{first.place.file, first.place.line, 1};
   throw InputError(cells.size() > columns ? cells[columns].place : line,

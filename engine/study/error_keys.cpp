@@ -794,13 +794,14 @@ bool states_size(const StudySection& errors, const Factor& factor) {
 }
 
 /// Throws InputError because an error of a feature varies and nothing says how much.
-[[noreturn]] void refuse_missing_size(const Place& place, const std::string& error, const std::string& feature,
-                                      bool has_zones) {
+[[noreturn]] static void refuse_missing_size(const Place& place, const std::string& error, const std::string& feature,
+                                             bool has_zones) {
   const std::string which = "'" + error + "' of the feature '" + feature + "' varies, ";
   if (has_zones) {
-    throw InputError(place, which + "but no zone of the feature limits it, and the study does not say its size",
-                     "give the feature a zone in the mechanism's file, or write the size of all lengths as "
-                     "errors.linear, or leave the error out of analysis.factors");
+    throw InputError(
+        place, which + "but no zone of the feature limits it, and the study does not say its size",
+        "give the feature a zone in the mechanism's file, or write the size of all lengths as "
+        "errors.linear, or leave the error out of analysis.factors (in an allocation: put it into a part)");
   }
   throw InputError(place,
                    "key 'errors.zones' is missing: " + which +

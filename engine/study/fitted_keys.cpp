@@ -62,14 +62,15 @@ double read_weight(const StudyValue& value, const Factor& factor, const FittedEr
 }
 
 /// Throws InputError for a key of a combination that names no error, and for a pattern that matches none.
-void check_error_names(const StudySection& section, const ModelDescription& model) {
+void check_error_names(const StudySection& section, const Study& study) {
+  const ModelDescription& model = study.model();
   std::vector<std::string_view> known = names(model.factors);
   const std::vector<std::string> keys = section.keys();
   for (const std::string& key : keys) {
     if (!is_pattern(key)) continue;
     known.push_back(key);
     if (std::ranges::any_of(model.factors, [&](const Factor& factor) { return matches(key, factor.name); })) continue;
-    section.require(key).fail("matches no error of the mechanism", "'poesy models' lists the errors");
+    section.require(key).fail("matches no error of the mechanism", listed_by_models(study));
   }
   section.allow(known, "error");
 }
@@ -88,10 +89,11 @@ void set_weight(const StudyValue& value, FactorIndex factor, FittedErrors& combi
       read_weight(value, error, combination, model);
 }
 
-FittedErrors read_combination(const StudyValue& value, const std::string& own, const ModelDescription& model) {
+FittedErrors read_combination(const StudyValue& value, const std::string& own, const Study& study) {
+  const ModelDescription& model = study.model();
   check_own_name(value, own, "combination", model);
   const StudySection section = value.section();
-  check_error_names(section, model);
+  check_error_names(section, study);
   FittedErrors combination{.name = own, .dimension = Dimension::number, .place = value.place()};
   for (const auto& [key, weight] : in_order(section)) {
     for (std::size_t f = 0; f < model.factors.size(); ++f) {
@@ -104,10 +106,10 @@ FittedErrors read_combination(const StudyValue& value, const std::string& own, c
   return combination;
 }
 
-std::vector<FittedErrors> read_combinations(const StudySection& section, const ModelDescription& model) {
+std::vector<FittedErrors> read_combinations(const StudySection& section, const Study& study) {
   std::vector<FittedErrors> list;
   for (const auto& [key, value] : in_order(section.section("combinations"))) {
-    list.push_back(read_combination(value, key, model));
+    list.push_back(read_combination(value, key, study));
   }
   return list;
 }
@@ -233,7 +235,7 @@ std::vector<std::pair<std::string, StudyValue>> in_order(const StudySection& sec
 }
 
 std::vector<FittedErrors> read_fitted(const StudyValue& value, const StudySection& section, const Study& study) {
-  const std::vector<FittedErrors> combinations = read_combinations(section, study.model());
+  const std::vector<FittedErrors> combinations = read_combinations(section, study);
   std::vector<FittedErrors> fit;
   if (value.is_text()) {
     add_named(value, combinations, study, fit);

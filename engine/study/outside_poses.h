@@ -11,8 +11,8 @@ namespace poesy {
 
 /// A coordinate of a pose that is outside the mechanism's workspace.
 struct OutsidePose {
-  std::size_t pose;        ///< position of the pose in the list
-  std::size_t coordinate;  ///< position of the coordinate in a pose
+  std::size_t pose;        ///< index of the pose in the list
+  std::size_t coordinate;  ///< index of the coordinate in a pose
 };
 
 /// The first coordinate that is outside the workspace by more than this share of the workspace's range, and the first

@@ -103,6 +103,7 @@ std::vector<TableColumn> read_header(CsvLines& lines, const KnownColumns& known)
 }
 
 /// Takes a column of text with a title that people give labels as the column "part", unless another one names the rows.
+/// From then on its cells must be labels: each valid, and different from the others.
 void take_likely_labels(std::vector<TableColumn>& columns) {
   constexpr std::array<std::string_view, 5> kTitles{"serial", "serial_number", "sn", "id", "number"};
   if (std::ranges::find(columns, TableColumn::Role::label, &TableColumn::role) != columns.end()) return;

@@ -230,10 +230,14 @@ std::vector<std::string> rounding_remarks(const Mechanism& mechanism, double mis
                   small_length_text(mismatch))};
 }
 
-bool has_sliding_joint(const Mechanism& mechanism) {
-  return std::ranges::any_of(mechanism.limbs, [](const Limb& limb) {
+static std::string sliding_joints_note(const Mechanism& mechanism) {
+  const bool has_one = std::ranges::any_of(mechanism.limbs, [](const Limb& limb) {
     return std::ranges::any_of(limb.joints, [](const Joint& joint) { return joint.motion == Motion::prismatic; });
   });
+  return has_one
+             ? "  The point of a P joint does not change how it slides, but errors of its frame turn about it, and its "
+               "features\n  are there: give the joint or the feature the point (at) of the part that is meant.\n"
+             : "";
 }
 
 std::string structure_text(const Mechanism& mechanism) {
@@ -269,11 +273,7 @@ std::string structure_text(const Mechanism& mechanism) {
                       mechanism.about == ErrorsAbout::joint ? "points of its first and last joint"
                       : mechanism.is_branched()             ? "origins of the bodies there"
                                                             : "origins of base and platform");
-  if (has_sliding_joint(mechanism)) {
-    text +=
-        "  The point of a P joint does not change how it slides, but errors of its frame turn about it, and its "
-        "features\n  are there: give the joint or the feature the point (at) of the part that is meant.\n";
-  }
+  text += sliding_joints_note(mechanism);
   for (const EachLimb& each : mechanism.each) text += "  " + each.text + ".\n";
   return text;
 }

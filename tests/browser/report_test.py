@@ -19,7 +19,7 @@ if browser.missing():
     sys.exit(77)
 
 from figure_checks import EMPTY, FEW_CLICKS, MOST_CLICKS, FigureChecks
-from figures_page import (NO_EFFECT, add_apart, add_bars, add_extremes, add_lines, add_small_fields, add_what_if,
+from figures_page import (NO_EFFECT, add_apart, add_bars, add_extremes, add_lines, add_plane, add_small_fields, add_what_if,
                           figures_page)
 
 PROGRAM = os.environ["POESY_PROGRAM"]
@@ -159,7 +159,7 @@ class Figures(PageTest):
         self.assertTrue(0 < faint < count, (faint, count))
 
     def test_a_coordinate_that_does_not_vary_is_left_out(self):
-        self.open(figures_page(WEB))
+        self.open(figures_page(WEB, add_plane))
         texts = self.browser.run("""const figure = document.querySelector("[data-figure=workspace_plane]");
             const views = [...figure.querySelectorAll(".views svg")];
             return [figure.querySelectorAll("[type=range]").length, ...views.map((svg) => svg.textContent)]""")

@@ -120,8 +120,8 @@ function check_kind(kind)
     case 'identification'
       check_against_table(result, result.tables.groups.rows{1}, 'single_max', 'group_1', 1);
     case 'evaluate'
-      response = result.tables.cases.columns{end}(1:end - 4);
-      check_against_table(result, response, 'cases', [response '_max'], 1000 ^ strcmp(result.tables.cases.units{end}, 'm'));
+      response = result.tables.cases.columns{end}(1:end - 8);
+      check_against_table(result, response, 'cases', [response '_extreme'], 1000 ^ strcmp(result.tables.cases.units{end}, 'm'));
   end
 end
 

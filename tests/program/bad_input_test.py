@@ -184,7 +184,7 @@ class BadInput(ProgramTest):
     def test_words_of_other_programs(self):
         for right, wrong, said in (('sigma = "1 mm"', 'std = "1 mm"', "did you mean 'sigma'?"),
                                    ('"normal", sigma = "1 mm"', '"gauss", sigma = "1 mm"', "did you mean 'normal'?"),
-                                   ('"1 mm"', '"+-1 mm"', "is the range '+-1 mm'; write one number, or a half_width")):
+                                   ('"1 mm"', '"+-1 mm"', "is the range '+-1 mm'; write one number; a distribution takes the +- of a drawing as half_width")):
             self.write("s.toml", changed(right, wrong))
             self.assertIn(said, self.said_of("check", "s.toml"))
 

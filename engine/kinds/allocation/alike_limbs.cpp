@@ -52,7 +52,7 @@ std::string shown_identical_limbs(const Study& study) {
 
 std::string unlike_limbs_text(std::span<const std::size_t> limbs, const Study& study) {
   LimbJoints joints = joints_of(study);
-  if (joints.empty()) return {};
+  if (joints.empty() || limbs.empty()) return {};
   const std::size_t first = limbs.front();
   const auto differs = [&](std::size_t limb) { return joints[limb] != joints[first]; };
   const auto other = std::ranges::find_if(limbs, differs);

@@ -113,16 +113,20 @@ std::string parts_lines(const Study& study) {
   return text;
 }
 
-/// A line of a template with the key identical_limbs for all limbs that have features of one name, which share a
-/// tolerance in most drawings. If there are none, the line of shown_identical_limbs().
+/// A line of a template with the key identical_limbs for the limbs that have features of the same names, which share a
+/// tolerance in most drawings. The line of shown_identical_limbs() if there are none, or if their names or joints
+/// differ.
 std::string limbs_with_alike_features(const Study& study) {
   std::map<std::string, std::set<std::size_t>> limbs_of;
   for (const Feature& feature : study.model().features) limbs_of[feature.label].insert(feature.limb);
   std::set<std::size_t> alike;
   for (const auto& [label, limbs] : limbs_of) {
-    if (limbs.size() > 1) alike.insert(limbs.begin(), limbs.end());
+    if (limbs.size() < 2) continue;
+    if (!alike.empty() && alike != limbs) return shown_identical_limbs(study);
+    alike = limbs;
   }
-  if (alike.empty()) return shown_identical_limbs(study);
+  const bool differ = !unlike_limbs_text(std::vector(alike.begin(), alike.end()), study).empty();
+  if (alike.empty() || differ) return shown_identical_limbs(study);
   return fmt::format("identical_limbs = [{}]\n", fmt::join(alike, ", "));
 }
 

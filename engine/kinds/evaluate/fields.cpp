@@ -439,6 +439,9 @@ void read(const h5::File& file, StoredResult& result) {
   // Files of version 0.2 do not say which rows are within all limits.
   if (result.verdicts && file.exists(kWithinLimits)) {
     found.within_limits = read_along<std::uint8_t>(file, kWithinLimits, {rows});
+    if (std::ranges::any_of(found.within_limits, [](std::uint8_t within) { return within > 1; })) {
+      throw h5::Error(std::string(kWithinLimits) + " has values other than 0 and 1");
+    }
     result.verdicts->rows_within = static_cast<std::uint64_t>(std::ranges::count(found.within_limits, 1));
   }
   if (result.verdicts) {

@@ -317,7 +317,8 @@ Answer answer(const StoredResult& result) {
   if (cases > 0) {
     const auto extreme = found.extreme.row(r);
     const auto worst = static_cast<std::size_t>(
-        std::ranges::max_element(extreme, {}, [](double value) { return std::abs(value); }) - extreme.begin());
+        std::ranges::max_element(extreme, {}, [](double value) { return std::isnan(value) ? -1.0 : std::abs(value); }) -
+        extreme.begin());
     lines.emplace_back(
         "Answer", fmt::format("Of {}, {} does most: {} of up to {}, on average {}.", counted(cases, "case", "cases"),
                               found.cases[worst], response.name, response_text(response, extreme[worst]),

@@ -174,8 +174,7 @@ std::string needed_machines_note(const Changes& changes, const ToldErrors& found
   std::ranges::nth_element(half_widths, middle);
   return fmt::format(
       "With {}, a change of about {} is distinguished from zero; a tenth of it needs {}. The shares of the scatter "
-      "rank "
-      "errors with far fewer",
+      "rank errors with far fewer",
       counted(yield.machines, "machine", "machines"), percent_text(*middle),
       counted(kFiner * kFiner * yield.machines, "machine", "machines"));
 }

@@ -19,7 +19,7 @@ from ._study import write_study
 
 Floats = npt.NDArray[np.float64]
 
-_SOLUTIONS = ("converged", "stagnated")  # names of statuses that count as solved
+_SOLUTIONS = ("converged", "stagnated", "by_series")  # names of statuses that count as solved
 
 
 class Evaluation(dict[str, Floats]):

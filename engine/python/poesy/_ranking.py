@@ -365,7 +365,7 @@ def _identification(result: Result, response: str | None) -> Ranking:
     found = result.to_xarray("identification")
     poses = result.to_xarray("poses").sizes["pose"]
     share = (1.0 - found["single_below"].values / poses).mean(axis=0)
-    deformation = _relative(found["single_max"].values, found.attrs["rounding"]).mean(axis=0)
+    deformation = _relative(found["single_max"].values, found.attrs["rounding"])
     single, coupled = found["single"].values, found["coupled"].values
     names = [str(name) for name in found["factor"].values]
     order = sorted(range(len(names)), key=lambda p: (single[p], coupled[p], deformation[p]), reverse=True)
@@ -379,10 +379,12 @@ def _identification(result: Result, response: str | None) -> Ranking:
 
 
 def _relative(largest: Any, rounding: float) -> Any:
-    """Deformations [groups, errors] over the largest of their group. Rounding counts as 0."""
-    clean = np.where(largest <= rounding, 0.0, largest)
-    most = np.nanmax(clean, axis=1, keepdims=True)
-    return clean / np.where(most > 0.0, most, 1.0)
+    """The mean over the groups of sizes, for each error, of its deformation over the largest of the group. Rounding
+    counts as 0, and so does a deformation that was not found because nothing was solved.
+    """
+    clean = np.where(largest > rounding, largest, 0.0)
+    most = clean.max(axis=1, keepdims=True)
+    return (clean / np.where(most > 0.0, most, 1.0)).mean(axis=0)
 
 
 _KINDS: dict[str, Callable[[Result, str | None], Ranking]] = {

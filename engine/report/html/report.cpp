@@ -9,6 +9,7 @@
 #include "engine/model/calibrated.h"
 #include "engine/report/display.h"
 #include "engine/report/html/forces.h"
+#include "engine/report/one_study.h"
 #include "engine/report/report_kind.h"
 #include "engine/study/mechanism_doubts.h"
 
@@ -211,6 +212,10 @@ void add_merits(std::span<const ReportedResult> results, std::span<const std::ve
     section.paragraph(fmt::format("{}: {}", letter_of(n), name_of(results[n])));
   }
   section.table(*table);
+  for (std::size_t n = 1; n < results.size(); ++n) {
+    const std::string sweep = sweep_text(results[0].stored, results[n].stored, letter_of(n));
+    if (!sweep.empty()) section.paragraph(sweep);
+  }
 }
 
 /// Adds to the page a section on the differences between the studies, because these explain differences between the
