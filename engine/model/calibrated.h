@@ -11,10 +11,6 @@ namespace poesy {
 inline constexpr std::string_view kLeftByCalibration =
     "what the best correction of the actuators leaves, with drive offsets chosen anew at each pose; no real "
     "calibration is so good";
-no real
-    "
-    "calibration "
-    "is so good";
 
 /// A model with the calibrated_evaluator() of the given model as its evaluator. Its responses are those that remain
 /// after the best correction of the actuators. It has no trace, because a trace shows uncorrected errors. Throws
