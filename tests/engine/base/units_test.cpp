@@ -101,7 +101,8 @@ TEST(ParseQuantity, TellsTooSmallFromTooLarge) {
   }
   const std::string tiny = "0." + std::string(400, '0') + "1 mm";
   EXPECT_NE(refusal(tiny).find("is too small"), std::string::npos);
-  for (const std::string& text : {std::string("1e999 mm"), std::string("-1e+999 mm"), std::string(400, '7').append(" mm")}) {
+  for (const std::string& text :
+       {std::string("1e999 mm"), std::string("-1e+999 mm"), std::string(400, '7').append(" mm")}) {
     EXPECT_NE(refusal(text).find("too large"), std::string::npos) << refusal(text);
   }
   for (const std::string_view text : {"nan mm", "inf mm", "left", ""}) {
