@@ -129,12 +129,17 @@ class Drawing(ProgramTest):
 
     def test_errors_in_no_part_need_a_size(self):
         """They would have the default size of 1 mm, which no drawing means."""
+        text = (self.folder / "delta.toml").read_text()
+        self.write("delta.toml", re.sub(r'(name = "zero".*?), tolerance = "[^"]*"', r"\1", text))
+        self.assertNotEqual((self.folder / "delta.toml").read_text(), text)
         analysis = ('kind = "allocation"\nlimits = { tip_position = "0.12 mm" }\n'
-                    'parts = [ { zones = ["rail.*"], each = true, cost = { law = "reciprocal", b = 1, unit = "mm" } } ]')
-        self.write("some.toml", STUDY.format(fidelity="first-order", zones="", analysis=analysis))
+                    'parts = [ { zones = "all", each = true, cost = { law = "reciprocal", b = 1, unit = "mm" } } ]')
+        zones = 'errors.zones = { distribution = "normal", sigmas = 3 }'
+        self.write("some.toml", STUDY.format(fidelity="first-order", zones=zones, analysis=analysis))
         done = self.poesy("check", "some.toml")
         self.assertEqual(done.returncode, 2)
-        self.assertIn(b"key 'errors.zones' is missing", done.stderr)
+        self.assertIn("'zero_1' of the feature 'zero_1' varies, but no zone of the feature limits it",
+                      " ".join(done.stderr.decode().split()))
 
     def test_division(self):
         """Threads, shards and a stop change no bit."""
