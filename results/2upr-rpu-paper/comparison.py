@@ -145,9 +145,9 @@ def sensitivity(converged, other):
 def case(folder, study, name):
     """Maximum and mean of the angular (deg) and of the linear deformation (mm)."""
     row = table(folder, study, "cases")[name]
-    return {"angular_max_deg": float(row["angular_deformation_max [rad]"]) / DEGREE,
+    return {"angular_max_deg": float(row["angular_deformation_extreme [rad]"]) / DEGREE,
             "angular_mean_deg": float(row["angular_deformation_mean [rad]"]) / DEGREE,
-            "linear_max_mm": float(row["linear_deformation_max [m]"]) * 1e3,
+            "linear_max_mm": float(row["linear_deformation_extreme [m]"]) * 1e3,
             "linear_mean_mm": float(row["linear_deformation_mean [m]"]) * 1e3}
 
 

@@ -277,7 +277,7 @@ TEST_F(AllocationFile, IsExportedWithItsWayAndItsCertificate) {
       << "a seed has 64 bits, a double has 53";
   EXPECT_TRUE(csv("not_converged").starts_with("pose,not_converged,"));
   EXPECT_EQ(csv("failures"), "factor,pose,sample,status\nall,2,7,3\n");
-  EXPECT_TRUE(csv("factors").starts_with("factor,sigma [rad or m],"));
+  EXPECT_TRUE(csv("factors").starts_with("factor,start_sigma [rad or m],"));
 }
 
 }  // namespace

@@ -212,6 +212,8 @@ TEST_F(AllocationReport, TellsTheWayAndWhatElseWouldCost) {
             "99      8       -20\n"
             "99.73  10         0\n"
             "99.9   12.5      25\n"
+            "yield: what a study would ask for and certify with the same margin, so that more of its machines\n"
+            "would be good\n"
             "predicted, not certified; change: from the cost of the tolerances found\n");
   EXPECT_EQ(text_of(table("cost_of_limits"), kUnlimitedWidth),
             "What other limits would cost\n"
