@@ -73,7 +73,7 @@ TABLES = [
     (replaced(2, "p4,-60,0,0,-12.9 um,,"), "4:12", "in column 'deviation_z'"),
     (replaced(2, "p4,-60,0,0,inf,,"), "4:12", "in column 'deviation_z'"),
     (replaced(2, "p4,sixty,0,0,-12.9,,"), "4:4", "'sixty' in column 'x'"),
-    (replaced(1, ""), "3:1", "this line should have 7 cells, but has 1"),
+    (replaced(1, ""), "3:1", "this line is blank"),
     ("x [mm],y [mm],z [mm],deviation_z [um],sd_z [um]\n0,0,0,-240,-5\n", "2:12", "a standard deviation is below zero"),
     ("x [mm],y [mm],z [mm],deviation_z [um]\n0,0,0,\n", "2:1", "no value is measured"),
     ("x [mm],y [mm],z [mm],deviation_z [um]\n0,0,0,1\n500,0,0,1\n0,1,0,2\n", "3:1", "pose 2 (x = 0.5 m, y = 0 m, z = 0 m) is out of reach"),

@@ -106,7 +106,7 @@ class Calibrate(ProgramTest):
         self.succeeds("calibrate", "delta-measured.toml", "--measured", "delta-heights.csv", "-o", "machine.h5")
         self.succeeds("report", "machine.h5", "-o", "machine.html")
         page = " ".join((self.folder / "machine.html").read_text().split())
-        self.assertIn("Fitted: zero_1 -0.4571 mm, zero_2 0.09166 mm,", page)
+        self.assertIn("Fitted: zero_1 \u22120.4571 mm, zero_2 0.09166 mm,", page)
         self.assertRegex(page, r"and 1 more; left at the 7 poses, predicted: x 0\.2078 mm")
         self.assertIn("calibration of delta-puu: 7 fitted errors, 7 poses", page)
 

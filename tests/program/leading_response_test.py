@@ -65,7 +65,7 @@ class LeadingResponse(ProgramTest):
                 self.assertEqual([row["response"] for row in overall["rows"]][:4], [*order, "tip_position"])
                 drawing = next(table for table in tables if "features of the drawing" in table["caption"])
                 self.assertIn("do to tip_z in", drawing["caption"])
-        self.assertRegex(evaluated[1]["columns"][2]["heading"], "^(tip_z|x|rotation) ")
+        self.assertRegex(evaluated[1]["columns"][3]["heading"], "^(tip_z|x|rotation) ")
         self.succeeds("report", "machines.h5", "-o", "machines.html")
         text = re.sub(r"<[^>]*>", " ", (self.folder / "machines.html").read_text())
         self.assertTrue(re.search(r"Answer\s+tip_z is ", text))
