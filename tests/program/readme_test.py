@@ -32,7 +32,7 @@ class Readme(ProgramTest):
         drawing = study.read_text()
         tighter = drawing.replace("0.01 deg", angle)
         half = drawing.replace("0.02 mm", "0.01 mm")
-        percentages = re.findall(r"(?<!\d)\d\d\.\d\d(?= % are good everywhere)|(?<=\*\*PASS\*\*, )[\d.]+(?= %)|(?<=as they were: )[\d.]+(?= %)", text)
+        percentages = re.findall(r"(?<!\d)\d\d\.\d\d(?= % are good everywhere)|(?<=\*\*PASS\*\*, )[\d.]+(?= %)|(?<=instead gives )[\d.]+(?= %)", text)
         self.assertEqual(len(percentages), 3)
         for changed, code, verdict, share in zip((drawing, tighter, half), (6, 0, 6), ("FAIL", "PASS", "FAIL"), percentages):
             self.write("machine.toml", changed)
@@ -65,7 +65,7 @@ class Readme(ProgramTest):
         dependence = (STUDIES / "dependence.txt").read_text(encoding="utf-8").splitlines()
         published = dependence[:next(n for n, line in enumerate(dependence) if line.startswith("platform metric"))]
         metre, _, millimetre = (float(x) for x in next(x for x in published if x.startswith("epsilon_3_4_z")).split()[1:4])
-        self.assertIn(f"has {millimetre:.6f} mm/deg for epsilon_3_4_z instead of {metre}.", text)
+        self.assertIn(f"the index of epsilon_3_4_z is {millimetre:.6f} mm/deg instead of {metre} mm/deg.", text)
         taus = next(line for line in published if line.startswith("tau with the platform's")).split()[-4:]
         self.assertIn(f"Kendall's tau of the two rankings is {taus[0]} at 1 deg and {taus[3]} at 0.01 deg", text)
         self.assertIn(f"Kendall's tau of the two rankings is {taus[0]}, over 25 errors", rankings)
