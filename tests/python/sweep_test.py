@@ -63,7 +63,7 @@ class Sweeps(FolderTest):
     def test_refusals(self):
         for values, said in [
             ({"geometry.l_A": "60 mm"}, "has one value only"),
-            ({"geometry.l_A": [60, 70]}, "bare number"),
+            ({"geometry.l_A": [60, 70]}, "has no unit"),
             ({}, "needs --set"),
             ({"geometry.lA": LENGTHS}, "with mechanism.geometry.lA = 60 mm"),
         ]:

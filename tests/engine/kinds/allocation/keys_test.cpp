@@ -292,7 +292,7 @@ TEST(BlockOfParts, AsksAboutIdenticalLimbsWithOtherJoints) {
             "for both meant?");
 }
 
-TEST(TemplateOfTolerances, NamesOnlyLimbsWithTheSameJointsIdentical) {
+TEST(TemplateOfTolerances, JoinsLimbsWithTheSameJoints) {
   const auto text_of = [](const std::string& name) {
     std::ostringstream text;
     text << std::ifstream(POESY_TEST_DATA "/mechanisms/" + name).rdbuf();
