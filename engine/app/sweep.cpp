@@ -84,45 +84,58 @@ Study study_with(const SweepOptions& options, std::span<const GivenKey> given) {
   return study;
 }
 
-/// The design with these values: its study and its poses. None if the user stopped the search for poses.
+/// What looks like a mistake in designs. A doubt that holds for several designs is kept once, with the first of them.
+class DesignDoubts {
+ public:
+  void add(std::span<const GivenKey> given, const std::vector<std::string>& doubts) {
+    for (const std::string& doubt : doubts) {
+      if (std::ranges::find(doubts_, doubt) != doubts_.end()) continue;
+      doubts_.push_back(doubt);
+      designs_.push_back(words_of(given));
+    }
+  }
+
+  /// Prints the first doubts as warnings.
+  void warn() const {
+    constexpr std::size_t kMost = 3;
+    for (std::size_t n = 0; n < std::min(kMost, doubts_.size()); ++n) {
+      say(Message::warning, fmt::format("with {}: {}", designs_[n], doubts_[n]));
+    }
+    if (doubts_.size() <= kMost) return;
+    say(Message::warning,
+        fmt::format("{} more warnings are not shown; 'poesy check' prints those of one study", doubts_.size() - kMost));
+  }
+
+ private:
+  std::vector<std::string> doubts_;
+  std::vector<std::string> designs_;  ///< values of the design of each doubt, in words
+};
+
+/// The design with these values: its study and its poses. Adds what looks like a mistake in it to `doubts`. None if the
+/// user stopped the search for poses.
 std::optional<SweptDesign> design_of(const SweepOptions& options, const std::vector<GivenKey>& given,
-                                     const std::atomic<bool>& stop) {
+                                     const std::atomic<bool>& stop, DesignDoubts& doubts) {
   Study study = study_with(options, given);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   auto poses = naming(given, [&] { return find_poses(study, *model, {.quiet = options.quiet, .stop = &stop}); });
   if (!poses) return std::nullopt;
+  doubts.add(given, all_doubts(study, *model, *poses));
   return SweptDesign{given, std::move(study), *std::move(poses)};
 }
 
-/// The designs of a grid of values. None if the user stopped the search for poses.
+/// The designs of a grid of values. Adds what looks like mistakes in them to `doubts`. None if the user stopped the
+/// search for poses.
 std::optional<std::vector<SweptDesign>> designs_of(const SweepOptions& options,
                                                    std::span<const std::vector<GivenKey>> grid,
-                                                   const std::atomic<bool>& stop) {
+                                                   const std::atomic<bool>& stop, DesignDoubts& doubts) {
   std::vector<SweptDesign> designs;
   for (const std::vector<GivenKey>& given : grid) {
-    std::optional<SweptDesign> design = design_of(options, given, stop);
+    std::optional<SweptDesign> design = design_of(options, given, stop, doubts);
     if (!design) return std::nullopt;
     designs.push_back(*std::move(design));
   }
   check_sweep(designs, options.study);
   return designs;
-}
-
-/// Warns of what looks like a mistake in designs. A warning that holds for several designs is printed once.
-void warn_of_designs(std::span<const SweptDesign> designs) {
-  constexpr std::size_t kMost = 3;
-  std::vector<std::string> said;
-  for (const SweptDesign& design : designs) {
-    const std::unique_ptr<Model> model = build_model(design.study.mechanism);
-    for (const std::string& doubt : all_doubts(design.study, *model, design.poses)) {
-      if (std::ranges::find(said, doubt) != said.end()) continue;
-      said.push_back(doubt);
-      if (said.size() <= kMost) say(Message::warning, fmt::format("with {}: {}", words_of(design.given), doubt));
-    }
-  }
-  if (said.size() <= kMost) return;
-  say(Message::warning,
-      fmt::format("{} more warnings are not shown; 'poesy check' prints those of one study", said.size() - kMost));
 }
 
 /// The identity of a sweep, by which a checkpoint is recognised: that of the first design, but with the studies and the
@@ -253,14 +266,15 @@ int sweep(const SweepOptions& options) {
   const std::size_t threads = resolved_threads(options.threads);
   start_threads(threads);  // Threads start before any checkpoint is written.
   ResumableRun resumable(options.resume, path, resume_command_of(options));
-  const auto designs = designs_of(options, grid, stop);
+  DesignDoubts doubts;
+  const auto designs = designs_of(options, grid, stop, doubts);
   if (!designs) return interrupted(resumable);
   if (!options.yes && !resumable.continues() && !resumable.ends_within(kLongRun)) {
     ask_about(seconds_of(*designs, threads), options.study, threads, stop);
     if (stop) return interrupted(resumable);
   }
   resumable.start(identity_of(*designs), options.quiet);
-  warn_of_designs(*designs);
+  doubts.warn();
   const auto found = run_with_progress(options, keys, *designs, path,
                                        {.threads = threads,
                                         .stop = &stop,

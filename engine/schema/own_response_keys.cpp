@@ -23,8 +23,7 @@ const Keys<OwnResponse, Nothing>& response_keys() {
       .paths = {"response"},
       .meaning =
           "A response that you define from those of the mechanism. It is computed for each sample, before statistics. "
-          "It has `norm`, "
-          "`sum` or `direction`, and may be named wherever a response may, also in those behind it.",
+          "It has `norm`, `sum` or `direction`, and may be named wherever a response may, also in later [[response]].",
       .rows = {
           Row{.name = "name",
               .value = text_at(&OwnResponse::name),
