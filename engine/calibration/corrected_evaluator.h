@@ -54,7 +54,8 @@ class CorrectedEvaluator final : public Evaluator {
     std::uint32_t iterations = 0;
   };
 
-  /// The largest number of poses for which a CommandedPose is kept. Later samples use the same poses again.
+  /// The largest number of poses for which a CommandedPose is kept. It is kept because later samples use the same pose
+  /// again.
   static constexpr std::size_t kMostPoses = 1024;
 
   const CommandedPose& commanded_at(std::span<const double> pose);

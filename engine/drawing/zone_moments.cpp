@@ -104,7 +104,8 @@ double largest_tilt(const Feature& feature) {
   return std::min(by_location, by_orientation);
 }
 
-/// The standard deviations of an axis or a plane with these densities, truncated by the zones.
+/// The standard deviations of the errors of an axis or a plane, whose middle and tilt have these densities within the
+/// zones and 0 outside.
 FeatureSigmas cut(const Feature& feature, const Density& middle, const Density& tilt) {
   const auto at = [&](double length) {
     const auto [weight, square] = tilt_at(feature, tilt, length);

@@ -21,8 +21,8 @@ void name_files_beside(Study& confirming, const std::string& stem);
 /// The names of the files that write_files_beside() writes.
 std::vector<std::string> files_beside(const Study& confirming);
 
-/// Writes into a folder the files whose paths name_files_beside() set, as far as the study reads them. poses: the poses
-/// of the study. Throws FileError.
+/// Writes into a folder those of the files STEM_poses.csv, STEM_measured.csv and STEM_mechanism.toml that the study
+/// reads (see name_files_beside()). poses: the poses of the study. Throws FileError.
 void write_files_beside(const std::string& folder, const Study& confirming, const PoseSet& poses);
 
 /// Writes a study as NAME.toml and returns the path. The file begins with comments: one that states the errors which

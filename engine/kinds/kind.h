@@ -41,7 +41,7 @@ struct StudyResult {
   }
 };
 
-/// A study with everything that a run of it needs. Refers to all members.
+/// A study with everything that a run of it needs. All members are references, whose objects must outlive this one.
 struct StudyRun {
   const Study& study;         ///< the study
   const Model& model;         ///< the model of the study's mechanism
@@ -85,7 +85,7 @@ struct TolerancesOptions {
   std::string result;                ///< path of the result
   std::string response;              ///< name of the response for which tolerances are set; empty: the user names none
   std::optional<std::string> limit;  ///< limit on the root mean square of the response: "0.05 mm"
-  /// Error relative to which tolerances of equal effect are set: "NAME" or "NAME=0.1 mm".
+  /// Reference error: every tolerance gets the effect that the tolerance of this error has. "NAME" or "NAME=0.1 mm".
   std::optional<std::string> reference;
   std::string folder;        ///< folder for the files; empty: NAME_tolerances for the result NAME.h5
   bool extrapolate = false;  ///< whether to set tolerances even if a sensitivity index changes with the

@@ -159,8 +159,8 @@ void MachineCalibration::set_weights() {
     throw InputError(place, "noise is 0, so nothing can be weighed against the tolerances",
                      "state the noise, or write prior = \"none\"");
   }
-  // Equal weights for values without noise, in m or rad. The fit has converged when a step changes the values by less
-  // than a small share of this.
+  // Without noise, all values get the same standard deviation kEqual (m or rad). The fit has converged when a step
+  // changes the values by less than a small share of kEqual.
   constexpr double kEqual = 1e-6;
   weights_.setConstant(kEqual);
 }

@@ -197,8 +197,8 @@ struct ModelDescription {
   std::vector<std::size_t> headline;  ///< indices of the responses that a summary shows; empty: all of them
   /// The joints of a mechanism from a file, as lines of text for users; empty for other mechanisms.
   std::string structure = {};
-  /// The responses that a summary of a coupling study shows. They have signs, because a norm cannot show which effects
-  /// cancel. Empty: the headline.
+  /// Responses with a sign, for the summary of a coupling study: a norm cannot show which effects cancel. Empty: the
+  /// summary shows those of `headline`.
   std::vector<std::size_t> signed_headline;
 
   /// The index of the factor of this name; none if there is no such factor.

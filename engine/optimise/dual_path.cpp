@@ -122,7 +122,8 @@ double lower_bound(const SizedProblem& problem, std::span<const ProcessRange> al
 DualPath::DualPath(const SizedProblem& problem, std::vector<std::size_t> working_set)
     : problem_(problem),
       room_(1.0 - rounding_margin(problem.parts())),
-      is_in_set_(problem.tight),  // tight limits never join the working set, because their parts are already fixed
+      is_in_set_(problem.tight),  // tight limits are marked as if they were in the working set, so that they are never
+                                  // added: their parts are already fixed
       responses_(problem.parts()),
       sizes_(problem.parts()),
       inner_prices_(problem.parts()) {

@@ -7,14 +7,14 @@
 
 #include "engine/optimise/sized_problem.h"
 
-/// Presolve of pairs of parts (Within): bounds their sizes before the search. All sizes (u, v) of an outer and an inner
-/// part, 0 <= v <= share x u, are sums of two kinds of growth: of the outer part alone, (1, 0), and of both parts, (1,
-/// share). Neither kind lowers the use of a limit, even if the inner part's effect is negative. So the unused room of a
-/// limit bounds both kinds.
+/// Presolve of pairs of parts (Within): bounds their sizes before the search. Let u be the size of the outer part and v
+/// that of the inner part, 0 <= v <= share x u. Every such pair (u, v) is a (1, 0) + b (1, share) with a, b >= 0.
+/// Larger a or b never lower the use of a limit, even if the inner part's effect is negative. So the unused room of a
+/// limit bounds both a and b.
 namespace poesy {
 
-/// Replaces the processes of the outer part of each pair by common processes of both parts. Precondition: some process
-/// of the inner part fits in one of the outer part, or the inner part may be left out.
+/// Replaces the processes of the outer part of each pair by processes that describe both parts (SizedProcess::inner).
+/// Precondition: some process of the inner part fits in one of the outer part, or the inner part may be left out.
 void join_pairs(SizedProblem& problem);
 
 /// Whether a part is in a pair.

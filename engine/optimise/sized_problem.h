@@ -68,7 +68,9 @@ struct SizedProblem {
   /// [limits] 1 for a tight limit: the lowest sizes of the parts use up its room, except for rounding. So the parts
   /// that affect this limit are fixed at these sizes.
   std::vector<char> tight;
-  /// Pairs of parts. The outer part has the processes of both; the inner part has one process of size 0 without cost.
+  /// Pairs of parts: the size of the inner part (orientation) is bounded by that of the outer part (location). The
+  /// processes of both are stored with the outer part; the inner part's own list has one process of size 0 without
+  /// cost.
   std::span<const Within> pairs = {};
 
   std::size_t parts() const { return processes.size(); }  ///< N, the number of parts.

@@ -52,10 +52,11 @@ class Distribution {
 
   Shape shape() const { return shape_; }   ///< The shape of the density.
   double sigma() const { return sigma_; }  ///< Sigma of the normal, before truncation; 0 for other shapes.
-  /// The largest possible distance of an error from the centre, without the shift; infinity for the normal.
+  /// The largest possible distance of an error from the centre, without the shift; infinity for a normal that is not
+  /// truncated.
   double half_width() const { return half_width_; }
   double shift() const { return shift_; }  ///< The shift of shifted(); 0 if there is none.
-  /// The largest possible magnitude of an error; infinity for the normal.
+  /// The largest possible magnitude of an error; infinity for a normal that is not truncated.
   double largest() const { return half_width_ + shift_ + std::abs(centre_); }
   double centre() const { return centre_; }  ///< The middle of a symmetric shape; 0 for other shapes.
   /// The mean: the centre of a symmetric shape, otherwise the mean of the values.

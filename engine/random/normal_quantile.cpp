@@ -84,8 +84,8 @@ constexpr double kMiddle = 0.425;
 }
 
 /// A normal about zero that may be truncated at +-half_width. Its quantile at u is the quantile of the whole normal at
-/// 1/2 + middle(u); the share of the whole normal beyond it is tail(u). u - 1/2 and, for u >= 1/2, 1 - u are exact, so
-/// both tails have the same precision and the same numbers.
+/// 1/2 + middle(u); the share of the whole normal beyond it is tail(u). For a drawn u (a multiple of 2^-54, see
+/// stream.h), u - 1/2 and, for u >= 1/2, 1 - u are exact, so the quantiles at u and 1 - u are exactly opposite.
 struct Normal {
   double sigma;
   double half_width = std::numeric_limits<double>::infinity();

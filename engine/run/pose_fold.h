@@ -204,7 +204,7 @@ class CellSums {
   /// The store to which a unit of this size is added.
   const Store& store_of(const WorkUnit& unit) const { return unit.count == Plan::kUnitSamples ? whole_ : parts_; }
 
-  const Plan* plan_;       ///< the plan of the cells
+  const Plan* plan_;       ///< the plan, which divides the study into cells (one slot at one pose)
   std::size_t responses_;  ///< number of responses, R
   NumberRange cells_;      ///< cells of the shard
 

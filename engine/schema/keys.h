@@ -33,10 +33,11 @@ struct StudyKey {
   bool required = false;              ///< true if the key is required where it applies
   /// Advice to a user who leaves out a required key; may be empty.
   std::string missing = {};
-  std::string usual = {};                       ///< default: a value in backquotes, or a clause that describes it
-  std::string example = {};                     ///< example of a value in TOML that is not the default
-  std::vector<std::string_view> only_for = {};  ///< words of StudyTable::chooser for which the key applies; empty: all
-  bool may_stay = false;     ///< true if the key is ignored where it does not apply, false if it is refused there
+  std::string usual = {};    ///< default: a value in backquotes, or a clause that describes it
+  std::string example = {};  ///< example of a value in TOML that is not the default
+  std::vector<std::string_view> only_for =
+      {};                    ///< values of StudyTable::chooser with which the key applies; empty: all
+  bool may_stay = false;     ///< true: with other values the key is ignored; false: it is refused
   std::string_view meaning;  ///< what the key means, as a sentence
 };
 
@@ -47,13 +48,14 @@ struct StudyTable {
   /// "analysis.groups".
   std::vector<std::string_view> paths;
   std::string_view meaning;  ///< what the table is for, as a sentence
-  /// The key whose word determines which other keys of the table apply; empty: all apply.
+  /// The key whose value (a word) selects which other keys of the table apply; empty: all apply.
   std::string_view chooser = {};
   std::string_view owner = {};  ///< how messages name the chooser: "select ="
   std::vector<StudyKey> keys;   ///< the keys, in the order in which they are listed
 
-  /// The key of this name; null if there is none. Several keys may have the same name, each for other words of the
-  /// chooser. In this case the result is the key for `word`, or the first key of this name if none is for `word`.
+  /// The key of this name; null if there is none. Several keys may have the same name if each applies with other values
+  /// of `chooser`. In this case the result is the key that applies with the value `word`, or the first key of this name
+  /// if there is none.
   const StudyKey* find(std::string_view key, std::string_view word = {}) const;
   std::vector<std::string_view> names() const;  ///< The names of the keys, in order.
   bool has_names_of_model() const;  ///< Returns true if the table has a placeholder for names that the model gives.
@@ -67,7 +69,7 @@ struct StudyTable {
 /// elements of lists have numbers: "errors.override.delta_1", "analysis.groups[0]".
 const StudyTable* find_table(const StudyTables& tables, std::string_view path);
 
-/// Returns true if the key applies for this word of the table's chooser.
+/// Returns true if a key with this list StudyKey::only_for applies when `chooser` has this value.
 bool holds_for(std::span<const std::string_view> only_for, std::string_view word);
 
 /// The explanation of a key as plain text: its meaning and bounds, when it applies or is required, and its default.
@@ -82,7 +84,7 @@ std::string comment(std::string_view text);  ///< Text of any number of lines as
 /// consists of whole lines of TOML. Precondition: the tables and keys exist.
 class TemplateLines {
  public:
-  /// tables: must outlive this object. word: a word of the chooser, which selects among keys of the same name.
+  /// tables: must outlive this object. word: the value of `chooser`, which selects among keys of the same name.
   explicit TemplateLines(const StudyTables& tables, std::string_view word = {}) : tables_(&tables), word_(word) {}
 
   /// The given line, which sets this key, with the key's explanation. The explanation follows the line if there is
@@ -187,10 +189,11 @@ struct Key {
   /// The default in words, if it is not the value of a default-constructed object. An empty text means that there is no
   /// default.
   std::optional<std::string> usual = {};
-  std::string besides = {};                     ///< remark after the default, or after "required"
-  std::string example = {};                     ///< example of a value in TOML that is not the default
-  std::vector<std::string_view> only_for = {};  ///< words of the table's chooser for which the key applies; empty: all
-  bool may_stay = false;     ///< true if the key is ignored where it does not apply, false if it is refused there
+  std::string besides = {};  ///< remark after the default, or after "required"
+  std::string example = {};  ///< example of a value in TOML that is not the default
+  std::vector<std::string_view> only_for =
+      {};                    ///< values of StudyTable::chooser with which the key applies; empty: all
+  bool may_stay = false;     ///< true: with other values the key is ignored; false: it is refused
   std::string_view meaning;  ///< what the key means, as a sentence
   /// Reads the value if its meaning depends on the model, on files or on other keys; replaces KeyValue::read.
   void (*reader)(const StudyValue& value, Object& object, const Scope& scope) = nullptr;

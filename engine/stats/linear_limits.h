@@ -37,7 +37,7 @@ class ErrorRange {
 /// vector, or on its value if it has only one component.
 struct LinearLimit {
   std::size_t rows;  ///< number of components of the vector
-  /// Limit on the norm if it is a limit on magnitudes; otherwise limit on the value of the only component.
+  /// A limit on magnitudes applies to the norm of the vector; any other limit applies to its only component.
   ValueLimit limit;
   std::vector<double> offset;  ///< [components] the vector for zero errors, SI
   std::vector<double> slope;   ///< [components x errors] derivatives by the errors, SI

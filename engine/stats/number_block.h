@@ -13,7 +13,8 @@ struct NumberBlock {
   NumberBlock() = default;
   explicit NumberBlock(std::span<const double> numbers);  ///< Precondition: all numbers are finite.
 
-  /// The numbers. If there are more than kMostExact, each may be replaced by another number of its bucket.
+  /// The numbers. If there are more than kMostExact, each may be replaced by another number of the same bucket
+  /// (bucket_scale.h).
   std::vector<double> values;
   Extremes extremes;  ///< extremes of the numbers
 

@@ -44,8 +44,8 @@ herr_t close_file(H5FD_t* file) {
   return 0;
 }
 
-/// The features of this driver. They are those of HDF5's own drivers for memory and disk, so that all drivers write the
-/// same bytes.
+/// The features of this driver: those features of HDF5's own drivers for memory and disk that influence which bytes are
+/// written. So all drivers write the same bytes.
 herr_t features(const H5FD_t*, unsigned long* flags) {
   *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
            H5FD_FEAT_AGGREGATE_SMALLDATA | H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;

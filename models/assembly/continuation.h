@@ -9,11 +9,11 @@
 
 namespace poesy::assembly {
 
-/// Solves machines whose limbs do not deform each other by following them from the perfect machine, while all their
+/// Solves machines whose limbs do not deform each other. Each machine is followed from the perfect one while all its
 /// errors grow in proportion. A solution of the equations may belong to another way to assemble the machine (another
 /// assembly mode), and large errors may lead a solver there. Here the machine stays in the mode that contains the
-/// nominal pose. If the path comes to a singularity, no machine near the nominal one has these errors, and the status
-/// is not_assembled.
+/// nominal pose. If the path comes to a singularity, the status is not_assembled, although a path along which the
+/// errors grow in another order might avoid the singularity.
 ///
 /// Each stride (growth of the errors) is one solve by Solver::approach(). The stride is halved if the solution may have
 /// left the mode (Deuflhard, Newton Methods for Nonlinear Problems, 2004, section 5.1.3). No load acts on the way,

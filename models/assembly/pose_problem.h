@@ -44,12 +44,12 @@ class PoseProblem {
   /// [6 x 6] The matrix from twists in the kernel's units and axes to twists in the base frame (rad, m).
   const Matrix6& twists_from_units() const { return from_units_; }
 
-  /// Returns true if a series of starting points is known for samples with this varied error, range and constant
-  /// errors.
+  /// Returns true if a Chebyshev series of starting points is known for samples with this varied error, range and
+  /// constant errors.
   bool has_starts(const SampleBlock& samples) const;
 
-  /// Sets the series from which samples like these start; see KernelStart. If the series is empty, samples start from
-  /// the first-order solution.
+  /// Sets the Chebyshev series of the starting points of samples like these; see KernelStart. If the series is empty,
+  /// samples start from the first-order solution.
   void set_starts(const SampleBlock& samples, std::vector<double> coefficients);
 
  private:
@@ -63,10 +63,10 @@ class PoseProblem {
     double unit = 1.0;      ///< factor of the component's values
   };
 
-  /// The kind of samples for which a series of starting points was computed.
+  /// The kind of samples for which a Chebyshev series of starting points was computed.
   struct Started {
     FactorIndex factor;          ///< the only varied error
-    double range;                ///< SampleBlock::range of the samples
+    double range;                ///< half-width of the range of the varied error's values (SampleBlock::range)
     std::vector<double> errors;  ///< constant errors of the samples
   };
 

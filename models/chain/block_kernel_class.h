@@ -65,23 +65,25 @@ struct AnyShape {
 /// independent: no operation mixes lanes. Each sample iterates until it is solved or given up. After each round the
 /// remaining samples are packed together.
 ///
-/// published: the step is x = N^-1 f with f = J^T delta_mu and N = J^T J; the stopping rule is that of
-/// DeformationSolver.
+/// Method `gauss_newton` (pass `published`): the step is x = N^-1 f with f = J^T delta_mu and N = J^T J; the stopping
+/// rule is that of DeformationSolver.
 ///
-/// Newton: the step is x = M^-1 f. M is the negative derivative of f, exact to fourth order in the residual's angle. In
-/// addition to N it contains the rotation of the columns of J (the bracket of an earlier column with a later one) and
-/// the curvature of the logarithm (dlog = 1 - ad/2 + ad^2/12). A Newton step is safe if the pivots of M are at least
-/// 1e-5 of the diagonal of N, and 2 N - M is positive definite too. Then Gauss-Newton contracts to the same root to
-/// which the Newton step leads. A sample goes through up to three passes:
-///     direct   Newton from the start; refused at a step that is not safe or larger than the options allow;
+/// Method `newton`: the step is x = M^-1 f. M is the negative derivative of f, exact to fourth order in the residual's
+/// angle. In addition to N it contains the rotation of the columns of J (the bracket of an earlier column with a later
+/// one) and the curvature of the logarithm (dlog = 1 - ad/2 + ad^2/12). A Newton step is safe if the pivots of M are at
+/// least 1e-5 of the diagonal of N, and 2 N - M is positive definite too. Then Gauss-Newton contracts to the same root
+/// to which the Newton step leads. A sample goes through up to three passes of KernelPass:
+///     direct   Newton steps from the starting point. The pass gives up a sample at a step that is not safe or is
+///     larger
+///              than the options allow;
 ///     follow   Gauss-Newton from nominal displacements, up to 8 max_iterations. A Newton step replaces the
 ///              Gauss-Newton step if it is safe and below 1e-3 and the Gauss-Newton step is below 2e-3. This pass finds
-///              the root of Gauss-Newton, if there is one. It gives up a sample whose displacements return to those of
-///              an earlier iteration;
+///              the root to which Gauss-Newton converges, if it converges. The pass gives up a sample whose
+///              displacements return to those of an earlier iteration;
 ///     rescue   from nominal displacements, a Newton step if the pivots of M are positive, else half a Gauss-Newton
-///              step, up to max_iterations. This pass finds a root at which M is positive, if Gauss-Newton finds
-///              none. Roots more than 0.5 (rad, m) away from nominal displacements are other assembly modes of the
-///              chain and are refused.
+///              step, up to max_iterations. This pass finds a root at which M is positive definite, if Gauss-Newton
+///              does not converge. Roots more than 0.5 (rad, m) away from nominal displacements are other assembly
+///              modes of the chain and are refused.
 /// Newton converges quadratically. So a safe step of less than sqrt(tolerance / 10) is the last one, and the residual
 /// is updated to first order instead of being evaluated again.
 template <class T, class Shape>
@@ -225,13 +227,14 @@ class BlockKernel {
   const std::size_t capacity_;
 
   // Rows of length capacity_, with a value for each sample.
-  double* value_;  ///< values of varied errors, a row for each error; not set for the first in_place_ samples
+  double* value_;  ///< values of varied errors, a row for each error; the first in_place_ samples are read from
+                   ///< samples_ instead
   double* q_;
-  /// The content depends on the pass. published: residual of the last round; follow: displacements of an earlier round;
-  /// computation to first order: coordinates y (KernelMap).
+  /// Scratch memory. Pass `published`: residual of the last round. Pass `follow`: displacements of an earlier round.
+  /// First order: coordinates y (KernelMap).
   double* memory_;
-  double* smallest_;  ///< in the pass published: smallest change of the residual in all rounds so far
-  double* flat_;  ///< in the pass published: rounds since that smallest change; in direct: -1 if a fit gave the start
+  double* smallest_;  ///< pass `published`: smallest change of the residual in all rounds so far
+  double* flat_;  ///< pass `published`: rounds since that smallest change; pass `direct`: -1 if a fit gave the start
   std::uint32_t* index_;  ///< index of each sample in the block
   std::uint32_t* left_;   ///< samples to solve; after a pass, the samples that it did not solve
 

@@ -106,9 +106,9 @@ struct KernelMap {
   const double* delta_mu;  ///< [6 pairs x rows] change of delta_mu per unit of each component of y
 };
 
-/// The motion of the platform in the base frame (m, rad). Let xi_i = log(g_i g_nominal^-1) be the motion of limb i's
-/// platform, which has the pose g_i. The mean xi of all xi_i is the motion of the platform, which is displaced by D =
-/// exp(xi).
+/// The motion of the platform in the base frame (m, rad). Limb i alone puts the platform at the pose g_i, so it moves
+/// the platform by xi_i = log(g_i g_nominal^-1). The motion of the platform is the mean xi of all xi_i; its
+/// displacement is D = exp(xi).
 struct KernelPlatform {
   double nominal[12];  ///< platform pose without errors: rotation matrix row by row, then translation
   double tool[3];      ///< tool point, the second reported point; valid if has_tool
@@ -156,8 +156,8 @@ using simd::kMostLanes;
 /// The length of a row of scratch memory for `count` samples. It leaves room for the unused lanes of the last batch.
 static constexpr std::size_t kernel_capacity(std::size_t count) { return (count / kMostLanes + 2) * kMostLanes; }
 
-/// The number of rows of BlockKernel::memory_: residuals or displacements of earlier rounds, or the coordinates of a
-/// map.
+/// The number of rows of BlockKernel::memory_, which holds residuals or displacements of earlier rounds, or the
+/// coordinates y of a KernelMap.
 static constexpr std::size_t kernel_memory(const KernelChain& chain) {
   return 6 * chain.pairs > chain.joints ? 6 * chain.pairs : chain.joints;
 }

@@ -60,9 +60,10 @@ class NormalEquations {
   std::size_t idle_freedoms_;
   double reach_;
   std::vector<double> idle_;    ///< [idle x size] directions r of hold_idle()
-  std::vector<double> matrix_;  ///< [size x size] lower triangle of J^T W J; after factor(), with its factors L D L^T,
-                                ///< L below the diagonal and 1 / D on it
-  std::vector<lie::Screw<double>> pull_;      ///< [limbs] signed sum of the residuals of each limb
+  std::vector<double> matrix_;  ///< [size x size] lower triangle of J^T W J; factor() replaces it by its factors L D
+                                ///< L^T: L below the diagonal, 1 / D on it
+  std::vector<lie::Screw<double>> pull_;      ///< [limbs] sum of the residuals of each limb's pairs: added if the limb
+                                              ///< is i of the pair, subtracted if it is k
   std::vector<lie::Screw<double>> weighted_;  ///< weight matrix W times each column
   std::vector<double> solution_;
 };

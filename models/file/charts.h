@@ -9,11 +9,12 @@
 /// Charts: alternative coordinates for the poses of a mechanism of a file.
 namespace poesy::file {
 
-/// Coordinates that determine the pose as the mechanism's own coordinates do, and the path from home to a pose.
+/// Alternative coordinates of a pose. They determine the pose as the mechanism's own coordinates do; track() finds the
+/// pose.
 class Chart {
  public:
-  /// tracked: the mechanism whose path is followed; its platform may have another frame than that of `mechanism`.
-  /// tracked_T_platform: pose of the platform of `mechanism` in that frame.
+  /// tracked: the mechanism that track() moves; its platform frame may differ from that of `mechanism`.
+  /// tracked_T_platform: pose of the platform frame of `mechanism` in the platform frame of `tracked`.
   Chart(PoseChart description, const Mechanism& mechanism, const Mechanism& tracked, Given given,
         const Transform& tracked_T_platform);
 

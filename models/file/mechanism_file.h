@@ -162,9 +162,11 @@ struct MechanismFile {
   std::vector<GeometryParameter> geometry;
   std::vector<NamedPoint> points;                ///< named points that all limbs know
   PlatformLines platform;                        ///< the platform
-  std::vector<BodyLines> bodies;                 ///< bodies other than base and platform, without copies
+  std::vector<BodyLines> bodies;                 ///< bodies other than base and platform, each once as written; copies
+                                                 ///< (BodyLines::copies) are not listed
   LoadLines load;                                ///< load, used only if there is stiffness
-  std::vector<LimbLines> limbs;                  ///< limbs as written, without copies
+  std::vector<LimbLines> limbs;                  ///< limbs, each once as written; copies (LimbLines::copies) are not
+                                                 ///< listed
   std::optional<std::vector<Reference>> frames;  ///< frame errors, by names and patterns; empty: see all_frames()
   bool all = false;                              ///< true if the file says `frames = "all"`
   ErrorsAbout about = ErrorsAbout::joint;        ///< centre of rotation of all angular errors of frames

@@ -27,10 +27,11 @@ inline constexpr std::size_t kDrawsAmongOthers = 64;
 /// Measures the mean squares at the plan's errors.
 ///
 /// An error e of mean mu and standard deviation sigma adds y(mu + sigma)^2 / 2 + y(mu - sigma)^2 / 2 - y(c)^2 to the
-/// mean square of a response y. Its centre c is a stated mean, or 0. The formula is exact if y is linear in e, or the
-/// norm of a linear function. Let o be this sum with all other errors at their centres, and t its average over the
-/// first `draws` draws of the other errors. If errors interact in pairs, t - o is what the interactions of this error
-/// add. Each interaction belongs to two errors, so half of it is counted for each:
+/// mean square of a response y. Its centre c (Distribution::centre()) is mu, except that measured values have centre 0.
+/// The formula is exact if y is linear in e, or the norm of a linear function. Let o be this sum with all other errors
+/// at their centres, and t its average over the first `draws` draws of the other errors. If errors interact in pairs,
+/// the interactions of this error add the difference `t - o`. Each interaction belongs to two errors, so half of it is
+/// counted for each. The sum is over the errors:
 ///
 ///     value = y(c)^2 + sum of (o + t) / 2,     slope = t / sigma^2.
 ///
@@ -40,8 +41,8 @@ inline constexpr std::size_t kDrawsAmongOthers = 64;
 /// has the same bits for any number of threads and on all ranks. None if the run was stopped.
 ///
 /// With a calibration, y is the response that remains after a calibration without measurement noise, and draws must be
-/// 0. The noise of each measured value adds to a mean square as an error with its standard deviation does, but it has
-/// no slope.
+/// 0. The noise of a measured value counts in `value` like an error with the same standard deviation, but no slope is
+/// computed for it.
 std::optional<MeanSquares> mean_squares(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
                                         std::size_t draws, const RunOptions& options,
                                         const MachineCalibration* calibration = nullptr);

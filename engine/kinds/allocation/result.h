@@ -141,7 +141,7 @@ struct AllocationResult {
 
   std::vector<std::string> part_names;  ///< names of the parts
   Parts<std::string> part_members;      ///< names of a part's errors, separated by blanks
-  Parts<std::string> part_unit;         ///< SI unit of T: "m" or "rad"
+  Parts<std::string> part_unit;         ///< SI unit of the tolerance T: "m" or "rad"
   Parts<double> tolerance;              ///< tolerance T: the drawing states +-T, or T as the size of a zone
   Parts<double> sigma;                  ///< standard deviation of the errors about their mean
   Parts<double> sigmas;                 ///< number of sigma in T: T = shift + sigmas x sigma

@@ -55,7 +55,8 @@ inline constexpr std::size_t kMaxGradientMachines = 3000;
 inline constexpr double kSignificance = 3.0;
 /// The largest number of steps along the gradient. More steps would fit the noise of the machines (D66).
 inline constexpr std::size_t kMaxGradientSteps = 3;
-/// The largest number of programmes that one step along the gradient solves until the yield is kept.
+/// One step along the gradient solves at most this many optimisation problems, each with a rescaled limit, to find
+/// tolerances that keep the yield.
 inline constexpr std::size_t kMaxFits = 6;
 /// The trust region of a step along the gradient: the factor by which a tolerance may grow.
 inline constexpr double kGradientGrowth = 1.3;

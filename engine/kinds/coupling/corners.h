@@ -81,8 +81,8 @@ class CornerSearch {
     /// [corners][responses] magnitude of each response; NaN if the corner is not solved.
     std::vector<std::vector<double>> magnitude;
 
-    /// Position of the corner at which a response has the largest magnitude. A corner must be larger by more than
-    /// rounding to replace an earlier one.
+    /// Position of the corner at which a response has the largest magnitude. A later corner replaces an earlier one
+    /// only if its magnitude is larger by more than rounding.
     std::size_t worst(std::size_t response, double rounding) const;
   };
   /// A weighted sum of responses, as pairs of response and weight.

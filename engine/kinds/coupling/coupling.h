@@ -50,7 +50,7 @@ std::string_view name(UnknownSigns signs);  ///< The word for this choice in stu
 struct CouplingStudy {
   std::vector<double> linear;        ///< [sizes] sizes of errors that are lengths, m; empty if there are none
   std::vector<double> angular;       ///< [sizes] sizes of errors that are angles, rad; empty if there are none
-  ErrorPattern pattern;              ///< the pattern of every source
+  ErrorPattern pattern;              ///< which errors of each source are not zero, and which have the same sign
   std::vector<ErrorSource> sources;  ///< the sources; an error is in one source only
   UnknownSigns worst_case = UnknownSigns::search;  ///< whether worst cases are searched
 

@@ -12,7 +12,7 @@
 namespace poesy {
 namespace {
 
-/// Reads or writes the signs of this number of blocks, or an empty list.
+/// Reads or writes signs, one for each of this number of blocks of errors, or an empty list.
 void signs_state(Archive& archive, Signs& signs, std::size_t blocks) {
   archive.text(signs);
   const auto is_sign = [](char sign) { return sign == '+' || sign == '-'; };

@@ -92,7 +92,7 @@ std::vector<double> share_of_poses(const IdentificationResult& found,
 }
 
 /// [groups x errors] The largest deformation by each error alone, as a share of the largest by any error of its group.
-/// 0 if it is rounding. NaN if it is not known.
+/// 0 if the deformation is only rounding, NaN if it is unknown.
 std::vector<double> relative_deformations(const IdentificationResult& found) {
   std::vector<double> list;
   for (std::size_t g = 0; g < found.groups(); ++g) {

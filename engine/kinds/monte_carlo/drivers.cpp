@@ -69,9 +69,9 @@ bool has_any_share(const StoredResult& result, const YieldResult& yield, const M
 /// The errors on which the yield certainly depends: their effect on it is distinguished from zero (told).
 struct ToldErrors {
   std::vector<std::size_t> told;  ///< these errors: first those that certainly have a share in the scatter of a
-                                  ///< response, then the others; the largest loss of yield first in both
-  std::size_t tested = 0;  ///< number of errors whose effect was tested: their change of the yield is known, and they
-                           ///< have a share in some scatter
+                                  ///< response, then the others; in both groups the largest loss of yield first
+  std::size_t tested = 0;  ///< number of errors whose effect was tested: their change of the yield is known, and their
+                           ///< share in some scatter is not known to be zero
   std::size_t known = 0;   ///< number of errors whose change of the yield is known
 };
 

@@ -37,11 +37,11 @@ struct MachineSums {
   std::optional<ScoreSums> pose_scores;
   std::optional<LinearFitSums> fit;  ///< sums for the fit of a linear map from the errors to the limited vectors
                                      ///< (LimitedVector) at all poses together
-  /// [poses] The same for a linear map at each pose alone. These replace `fit` if machines draw errors anew at each
-  /// pose; otherwise empty.
+  /// [poses] Sums for a separate linear fit at each pose. They replace `fit` if machines draw errors anew at each pose;
+  /// otherwise empty.
   std::vector<std::optional<LinearFitSums>> fit_at_pose;
-  std::optional<PartSums> parts;        ///< influence of each measured part; set if there are limits and measured
-                                        ///< errors
+  std::optional<PartSums> parts;        ///< influence of each measured part (sample of a measured error) on the
+                                        ///< rejects; set if there are limits and measured errors
   std::vector<MainEffectSums> effects;  ///< [MachineTable::effects()] sums for main effects
 
   /// Empty sums.

@@ -153,8 +153,8 @@ struct CalibrationYields {
 /// The additional result of a Monte Carlo study with draws per machine.
 struct MachineResult {
   double conf_level = 0.95;                      ///< confidence level of all intervals
-  MachineValues largest;                         ///< largest magnitude of each machine over the poses
-  MachineValues rms;                             ///< root mean square of each machine over the poses
+  MachineValues largest;                         ///< largest magnitude of a response over the poses, for each machine
+  MachineValues rms;                             ///< root mean square of a response over the poses, for each machine
   std::optional<YieldResult> yield;              ///< yield; set if the study states limits
   std::optional<CalibrationYields> calibration;  ///< yields without calibration; set if machines are calibrated and the
                                                  ///< study states limits

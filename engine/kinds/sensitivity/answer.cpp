@@ -98,7 +98,7 @@ struct Measures {
   double removable = 1.0;              ///< the smallest removable share among the errors to calibrate
 };
 
-/// Returns true if the indices are of what a calibration leaves.
+/// Returns true if the indices are those of the responses that remain after a calibration.
 bool is_calibrated(const StoredResult& result) {
   return study_setting(result.study_text, "analysis", "calibrated") == "true" ||
          !study_setting(result.study_text, "analysis.calibration", "fit").empty();

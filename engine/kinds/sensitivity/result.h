@@ -68,7 +68,8 @@ struct FidelityResult {
   Indices global;           ///< SensitivityResult::global at the second fidelity
   Indices discrepancy;      ///< global at the second fidelity minus global at the first
   Indices relative_discrepancy;              ///< discrepancy divided by the error's effect
-  Indices nonlinearity;                      ///< change of mean and spread, divided by the error's effect
+  Indices nonlinearity;                      ///< root mean square change of mean and spread between the fidelities,
+                                             ///< divided by the error's effect
   Array<std::uint8_t, axis::Factor> linear;  ///< 1 if the error is linear, otherwise 0
   /// Number of samples that the second fidelity did not solve.
   Array<std::uint64_t, axis::Factor, axis::Pose> not_converged;

@@ -60,13 +60,14 @@ struct SensitivityJob {
   }
 };
 
-/// Returns true if certified series replace solves at this fidelity. They do not for linear maps, which cost no more
-/// than a series, nor for the published iteration, which must keep every bit.
+/// Returns true if Chebyshev series that were checked against solves (series_model.h) may replace solves at this
+/// fidelity. They are not used to first order (fidelity 1), which costs no more than a series, nor with the metric
+/// "published", whose results must stay the same to the last bit.
 bool has_series(const Study& study, std::size_t fidelity) {
   return study.solver.series && fidelity == 0 && study.model().metric != "published";
 }
 
-/// The model; with certified series if has_series().
+/// The model, with series in place of solves if has_series().
 std::shared_ptr<const Model> by_series(const Study& study, std::shared_ptr<const Model> model, std::size_t fidelity) {
   return has_series(study, fidelity) ? with_series(std::move(model)) : std::move(model);
 }
