@@ -89,7 +89,7 @@ def identification(converged, other):
     return ["## Tables 6 and 7: which errors deform", "",
             *markdown(["stage", "sizes", "published", "converged", "differ", "published procedure", "differ"], lines),
             "Couplings found: " + "; ".join(f"{a} with {b}" for a, b in sorted(pairs)) +
-            ". Neither member deforms alone; the paper lists the angular one.", ""]
+            ". Neither error of a pair deforms the mechanism alone; the paper lists the angular one.", ""]
 
 
 # Section 5.2
@@ -103,7 +103,7 @@ def simulation(converged, other):
             line += [f"{float(found['max']):.2g}", found["count"]]
         lines.append(line)
     return ["## Section 5.2, Table 8, Figure 7: errors that the joints absorb", "",
-            "The largest delta_mu_max over all poses and draws:", "",
+            "The table has the largest delta_mu_max over all poses and draws:", "",
             *markdown(["standard deviations", "published", "converged", "solves", "published procedure", "solves"],
                       lines)]
 
@@ -135,8 +135,8 @@ def sensitivity(converged, other):
             *markdown(["published rank", "error", "converged", "published procedure", "linear, converged",
                        "linear, published procedure", "angular [deg/..], converged", "angular, published procedure"],
                       lines),
-            "Without effect on the angular deformation in the paper: delta_1_1_y, epsilon_1_1_z, delta_1_2_z, "
-            "delta_1_3_x, delta_1_4_y. Here, converged: " + ", ".join(zeros[0]) + "; published procedure: " +
+            "In the paper these errors have no effect on the angular deformation: delta_1_1_y, epsilon_1_1_z, delta_1_2_z, "
+            "delta_1_3_x, delta_1_4_y. Here these have none, converged: " + ", ".join(zeros[0]) + "; by the published procedure: " +
             ", ".join(zeros[1]) + ".", ""]
 
 
@@ -191,7 +191,8 @@ def table10(converged, other):
                       difference(each[factor], tolerance) if known else ""]
         lines.append([factor, UNITS[kind(factor)], f"{tolerance:g}", *cells])
     return ["## Table 10: tolerances of equal effect", "",
-            "mu_ref / mu_p, counted from epsilon_1_1_z = 1 degree; limb 2 takes those of limb 1.", "",
+            "A tolerance is mu_ref / mu_p times 1 degree, the tolerance of the reference error epsilon_1_1_z. Limb 2 gets the "
+            "tolerances of limb 1.", "",
             *markdown(["error", "unit", "published", "converged", "difference", "published procedure", "difference"],
                       lines)]
 
@@ -263,8 +264,8 @@ def limit(converged, response, size):
         holds = mean <= float(size.split()[0])
         lines.append([label, f"{mean:.4f} mm", f"{rms:.4f} mm", f"{float(row['q_0.95']) * 1e3:.4f} mm", "holds" if holds else "is missed"])
     return [f"## Tolerances for a mean linear deformation of at most {size}", "",
-            "Tolerances of all 41 errors that deform, from the indices of all three limbs (`poesy tolerances`), and what "
-            "Monte Carlo studies with those tolerances found, all errors varying at once:", "",
+            "`poesy tolerances` computed tolerances of all 41 errors that deform the mechanism, from the indices of all three "
+            "limbs. The table has what Monte Carlo studies with these tolerances found, in which all errors vary together:", "",
             *markdown(["tolerances", "mean", "root mean square", "95 % lie below", "the limit"], lines)]
 
 
@@ -274,8 +275,8 @@ X. Du, B. Wang, J. Zheng, Machines 2022, 10(11), 990. Written by `./regenerate`;
 figures come from [published/](published), ours from the exported tables of the studies in [studies/](studies).
 
 **converged**: Newton's method; draws that do not converge are left out. **published procedure**: Gauss-Newton, 50 iterations, and the last
-iterate is kept whether it converged or not. Both columns differ where solves need more than 50 iterations: an unfinished iterate can be far
-off, so that a few draws determine an index. Where both columns differ from the paper, the cause is the printed equations, the inferred
+iterate is kept whether it converged or not. The two columns differ from each other where solves need more than 50 iterations: an unfinished
+iterate can be far off, so that a few draws determine an index. Where both columns differ from the paper, the cause is the printed equations, the inferred
 workspace or the unknown draws: [README.md](README.md) explains it table by table.
 
 The tables depend on the unit, the frame and the size of the errors: lengths are in metres, the base frame's origin is the paper's, and

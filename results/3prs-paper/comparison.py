@@ -172,7 +172,7 @@ def in_words(folder):
                 if not (signed and "independent" in name):
                     lines.append([place, claim, name, *verdict(check, own)])
     return ["## What the paper says in words", "",
-            f"Tool of {MAIN_TOOL}, errors of 0.1 mm, exact solves. Independent errors have no common sign, so claims "
+            f"The claims are checked with a tool of {MAIN_TOOL}, errors of 0.1 mm and exact solves. Independent errors have no common sign, so claims "
             "about directions are checked for the other two readings. Two curves count as having the same direction, or the "
             "opposite one, if they have it for two thirds of the trajectory. Brackets state how a word without a number was "
             "interpreted.", "",
