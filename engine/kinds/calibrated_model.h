@@ -25,8 +25,8 @@ class CalibratedModel final : public ForwardingModel {
 };
 
 /// The model that a study solves if its errors are given, or if it varies one error at a time: `model`, or a
-/// CalibratedModel if the study has [analysis.calibration]. Refers to the study and the model. Throws InputError as the
-/// constructor of MachineCalibration does.
+/// CalibratedModel if the study has [analysis.calibration]. Keeps references to the study and the model. Throws
+/// InputError as the constructor of MachineCalibration does.
 std::shared_ptr<const Model> studied_model(const Study& study, const Model& model, const PoseSet& poses);
 
 }  // namespace poesy

@@ -69,7 +69,7 @@ struct RunKind {
 inline std::size_t shards_by_pose(const Study&, std::size_t poses) { return poses; }
 
 /// The given errors of a result whose errors were not drawn, and how a user of `poesy replay` names a solve: by the
-/// pose, and by the number or the name of a row of errors. Refers to the result.
+/// pose, and by the number or the name of a row of errors. Keeps a reference to the result.
 struct GivenErrors {
   std::string_view word;           ///< word for a named row in messages: "case"
   std::vector<std::string> names;  ///< names of the rows; empty if they have none

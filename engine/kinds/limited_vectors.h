@@ -37,8 +37,9 @@ struct LimitedVector {
 /// outcomes of solves. Users of this class fit a linear model of the components at each pose.
 class LimitedVectors {
  public:
-  /// Refers to the plan and the model. There are no vectors if the study states no limit, or if the fits at all poses
-  /// need more than some tens of megabytes. A centred response has no vector if machines draw errors anew at each pose.
+  /// Keeps references to the plan and the model. There are no vectors if the study states no limit, or if the fits at
+  /// all poses need more than some tens of megabytes. A centred response has no vector if machines draw errors anew at
+  /// each pose.
   LimitedVectors(const Plan& plan, const Model& model, const Analysis& analysis);
 
   std::span<const LimitedVector> each() const { return vectors_; }  ///< The vectors, in the order of the limits.

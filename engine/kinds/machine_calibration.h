@@ -21,12 +21,13 @@ namespace poesy {
 /// fitted. Immutable, and shared by all threads.
 class MachineCalibration {
  public:
-  /// Refers to the study and the model. poses: those of the study. Precondition: `analysis.calibration` is set. Throws
-  /// InputError if the measurements do not determine the fitted errors, or if a pose cannot be measured.
+  /// Keeps references to the study and the model. poses: those of the study. Precondition: `analysis.calibration` is
+  /// set. Throws InputError if the measurements do not determine the fitted errors, or if a pose cannot be measured.
   MachineCalibration(const Study& study, const Model& model, const PoseSet& poses);
 
   /// This calibration for the machines of another study, which differs only in the sizes of its errors and in its seed.
-  /// Only the scales of the fitted errors and the prior depend on the sizes. Refers to the other study.
+  /// Only the scales of the fitted errors and the prior depend on the sizes. The result keeps a reference to the other
+  /// study.
   MachineCalibration of(const Study& study) const;
 
   const Study& study() const { return *study_; }                   ///< The study.
@@ -89,7 +90,7 @@ calibration::Matrix all_errors(const SampleBlock& samples);
 /// one thread. The result for a machine depends only on the study, the machine's number and its errors.
 class MachineCalibrator {
  public:
-  /// The calibration must outlive this object, and must not be moved before.
+  /// The calibration must outlive this object and must not be moved.
   explicit MachineCalibrator(const MachineCalibration& calibration);
 
   /// Calibrates machines and returns their controllers. errors: [all errors x machines], SI. machines: the number of

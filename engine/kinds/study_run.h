@@ -19,7 +19,7 @@ std::optional<StudyResult> run_study(const Study& study, const Model& model, con
 /// Runs a study at the poses that it selects, with the model that it names. Throws InputError as select_poses() does.
 std::optional<StudyResult> run_study(const Study& study, const RunOptions& options = {});
 
-/// Estimates the work of a run without doing it. Refers to all arguments.
+/// Estimates the work of a run without doing it. The result keeps references to all arguments.
 Outlook outlook(const Study& study, const Model& model, const PoseSet& poses);
 
 /// Throws InputError unless the study can be divided into this many shards at this many poses.

@@ -8,10 +8,10 @@
 #include "engine/optimise/least_cost.h"
 #include "engine/optimise/sized_problem.h"
 
-/// The tolerances with the least cost if each part has one process. Finding them is a convex programme.
+/// The tolerances with the least cost if each part has one process. They solve a convex optimisation problem.
 namespace poesy {
 
-/// The solution of a convex programme and its proof of optimality.
+/// The solution of a convex optimisation problem and its proof of optimality.
 struct ConvexSolution {
   Allocation allocation;           ///< the tolerances with the least cost
   double lower_bound = 0.0;        ///< lower bound on the cost with these processes

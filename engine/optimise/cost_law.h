@@ -23,8 +23,8 @@ struct CostCurve {
   double curvature;  ///< second derivative with respect to the size, >= 0
 };
 
-/// The cost of a part as a function of its tolerance T. Each law is convex and non-increasing in T and in T^2, so the
-/// least cost under limits is a convex programme. Laws whose coefficient b is 0 are constant.
+/// The cost of a part as a function of its tolerance T. Each law is convex and non-increasing in T and in T^2, so
+/// finding the least cost under limits is a convex optimisation problem. Laws whose coefficient b is 0 are constant.
 class CostLaw {
  public:
   /// The law with the same cost for every tolerance.

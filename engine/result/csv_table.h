@@ -79,7 +79,7 @@ CsvTable lines_of_factors(const StoredResult& result, std::string name);
 /// A table with a line for each pose, and no columns of numbers yet.
 CsvTable lines_of_poses(const StoredResult& result, std::string name);
 
-/// A column of the elements of a list, or of get(element) if `get` is given. Refers to the list.
+/// A column of the elements of a list, or of get(element) if `get` is given. Keeps a reference to the list.
 template <class List, class Get = std::identity>
 CsvColumn list_column(std::string heading, const List& list, Get get = {}) {
   return {std::move(heading),

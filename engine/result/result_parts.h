@@ -113,7 +113,8 @@ struct SolveNumber {
 };
 /// All numbers that tell how solves ended. solves_not_assembled is among them only if a solve ended with this status.
 std::vector<SolveNumber> solve_numbers(std::span<const SolveCounts> solves);
-/// Adds to the table a column for each number of solve_numbers(); line n shows the n-th cell. Refers to the solves.
+/// Adds to the table a column for each number of solve_numbers(); line n shows the n-th cell. The columns keep a
+/// reference to the solves.
 void append_solve_columns(CsvTable& table, std::span<const SolveCounts> solves);
 
 /// Adds to the result file the list of the first failed samples. slots: names in StoredResult::varied, to which
@@ -157,8 +158,8 @@ void add_course(ResultBuilder& result, const CourseWords& words, const EstimateC
 /// Reads the course that add_course() wrote.
 EstimateCourse read_course(const h5::File& file, const CourseWords& words);
 /// Adds to `tables` a table for each response, with a line for each varied error (slot) and each number of samples.
-/// ends: [slots] the final number of samples at each pose; empty if all slots reached the end of the course. Refers to
-/// all arguments.
+/// ends: [slots] the final number of samples at each pose; empty if all slots reached the end of the course. Keeps
+/// references to all arguments.
 void append_course_tables(CsvTables& tables, const StoredResult& result, const CourseWords& words,
                           const EstimateCourse& found, std::span<const std::uint64_t> ends);
 

@@ -73,7 +73,7 @@ void ends_state(Archive& archive, std::span<SolveCounts> solves, std::span<Faile
 std::vector<std::size_t> history_points(const Plan& plan);
 
 /// The history points (numbers of samples, see history_points()) below unit.count, for the first unit of a cell; none
-/// for later units. Refers to `points`.
+/// for later units. Keeps a reference to `points`.
 std::span<const std::size_t> points_within(const WorkUnit& unit, std::span<const std::size_t> points);
 
 /// The largest number of poses at which a sensitivity study solves again to check an assumption, such as linearity.
@@ -86,7 +86,8 @@ constexpr std::size_t some_poses(std::size_t poses) { return std::min(kSomePoses
 /// order of the study's poses. Precondition: n < some_poses(poses).
 constexpr PoseIndex some_pose(std::size_t n, std::size_t poses) { return PoseIndex(n * poses / some_poses(poses)); }
 
-/// The outcomes of the samples of one work unit. Refers to the solver's scratch, and is valid until its next solve.
+/// The outcomes of the samples of one work unit. Keeps a reference to the solver's scratch, and is valid until its next
+/// solve.
 struct UnitOutcomes {
   std::span<const double> values;             ///< [varied errors x samples] errors that vary, SI
   std::span<const double> responses;          ///< [responses x samples] responses, SI
@@ -95,7 +96,7 @@ struct UnitOutcomes {
 };
 
 /// The base class of the evaluators of work units. It owns the model's evaluator and the scratch memory of one thread.
-/// Refers to the plan.
+/// Keeps a reference to the plan.
 class UnitSolver {
  protected:
   /// varied: the number of errors that vary together.
@@ -135,7 +136,7 @@ class UnitSolver {
 /// of a unit depends only on the plan and the unit.
 class UnitEvaluator : private UnitSolver {
  public:
-  /// Refers to both arguments.
+  /// Keeps references to both arguments.
   UnitEvaluator(const Plan& plan, const Model& model);
 
   /// Solves the whole unit.
@@ -156,7 +157,7 @@ class UnitEvaluator : private UnitSolver {
 /// the plan and the unit.
 class PoseUnitEvaluator : private UnitSolver {
  public:
-  /// Refers to both arguments.
+  /// Keeps references to both arguments.
   PoseUnitEvaluator(const Plan& plan, const Model& model);
 
   /// Solves the whole unit.

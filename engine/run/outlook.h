@@ -41,7 +41,8 @@ struct WorkOutlook {
   std::function<void()> prepare = {};
 };
 
-/// The expected cost of a study: solves, memory and kinds of work. Refers to the study, the model and the poses.
+/// The expected cost of a study: solves, memory and kinds of work. It keeps references to the study, the model and the
+/// poses.
 struct Outlook {
   std::string solves;               ///< text: the number of solves, and the product from which it results
   MemoryOutlook memory;             ///< memory in addition to that of the program itself

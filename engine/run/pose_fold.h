@@ -45,7 +45,7 @@ class PoseFold {
   /// The type of the sums to which units are added.
   using Sums = decltype(std::declval<const Job&>().sums(std::declval<const Plan&>(), {}));
 
-  /// Works on the shard of the options, if they have one. Refers to the plan and the job.
+  /// Works on the shard of the options, if they have one. Keeps references to the plan and the job.
   PoseFold(const Plan& plan, const Job& job, const RunOptions& options)
       : plan_(plan), job_(job), shard_(options.shard.value_or(Shard())), rounds_(plan, job.rule()) {
     begin_sums();
@@ -149,7 +149,7 @@ class CellSums {
  public:
   static constexpr bool kOfRound = false;  ///< The sums are kept from round to round.
 
-  /// Sums without samples, for the cells of a shard and R responses. Refers to the plan.
+  /// Sums without samples, for the cells of a shard and R responses. Keeps a reference to the plan.
   CellSums(const Plan& plan, std::size_t responses, const Shard& shard)
       : plan_(&plan), responses_(responses), cells_(shard.of(plan.cells())) {}
 

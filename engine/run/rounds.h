@@ -40,7 +40,7 @@ class Rounds {
     std::vector<double> rounding;
   };
 
-  /// Begins the first round. Refers to the plan.
+  /// Begins the first round. Keeps a reference to the plan.
   Rounds(const Plan& plan, Rule rule);
 
   /// The number of samples at each pose at the end of this round, for one varied error or for all errors together
@@ -102,7 +102,7 @@ class Rounds {
 class PendingUnits {
  public:
   /// done(cell), wanted(cell): the numbers of the cell's units that are done and that are wanted, at most
-  /// units_per_cell(). Refers to the plan.
+  /// units_per_cell(). Keeps a reference to the plan.
   template <class Done, class Wanted>
   PendingUnits(const Plan& plan, const Done& done, const Wanted& wanted) : plan_(&plan) {
     std::size_t end = 0;

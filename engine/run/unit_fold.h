@@ -51,7 +51,7 @@ class UnitFold {
   using Worker = decltype(std::declval<const Job&>().worker());  ///< The type of the worker of one thread.
   using Unit = std::invoke_result_t<Worker&, std::size_t>;       ///< The type of the output of a unit.
 
-  /// Works on the shard of the options, if they have one. Refers to the job.
+  /// Works on the shard of the options, if they have one. Keeps a reference to the job.
   UnitFold(const Job& job, const RunOptions& options)
       : job_(job), units_(job.units(options.shard.value_or(Shard()))), sums_(job.sums()) {
     clear();

@@ -14,7 +14,7 @@
 /// SI. Infinity means that the error alone has no effect; NaN means that its effect is not known.
 namespace poesy {
 
-/// The results of a sensitivity study for one response, SI. Refers to the study's arrays.
+/// The results of a sensitivity study for one response, SI. Keeps references to the study's arrays.
 struct ResponseStudy {
   /// A number for each error and pose.
   template <class T>

@@ -33,7 +33,7 @@ struct PowerSums {
 
 /// The number of further rejects, with errors of any size, that are assumed when the spread of a score is estimated. A
 /// few rejects may not include the largest values of the score (Agresti and Coull 1998, Am. Stat. 52, 119-126, add two
-/// of each kind for a share).
+/// successes and two failures for a share).
 inline constexpr double kAddedRejects = 4.0;
 
 /// With fewer rejects, the coverage of an interval of the gradient is below its level (theory.md).

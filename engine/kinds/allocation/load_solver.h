@@ -40,7 +40,8 @@ inline void loads_state(Archive& archive, std::vector<double>& loads, std::size_
 /// of a response to its limit. Owns the scratch memory of one thread.
 class LoadSolver : protected UnitSolver {
  protected:
-  /// Refers to all arguments. calibration: the calibration of each machine; null: machines are not calibrated.
+  /// Keeps references to all arguments. calibration: the calibration of each machine; null: machines are not
+  /// calibrated.
   LoadSolver(const Plan& plan, const Model& model, const RelativeLimits& limits, const MachineCalibration* calibration)
       : UnitSolver(plan, model, plan.factors().size()), limits_(limits), calibration_(calibration) {
     if (calibration != nullptr) calibrator_ = std::make_unique<MachineCalibrator>(*calibration);

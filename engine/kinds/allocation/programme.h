@@ -26,13 +26,13 @@ struct TolerancePoint {
   double cost = 0.0;                 ///< total cost; NaN if no part has a cost
 };
 
-/// The tolerances that a convex programme chose under the limits.
+/// The tolerances that the optimisation (ToleranceProgramme::choose) chose under the limits.
 struct ChosenTolerances : TolerancePoint {
   double lower_bound = 0.0;        ///< lower bound on the least cost; NaN if the aim has no costs
   std::vector<double> multiplier;  ///< [limits] cost saved per unit of additional room; empty if the aim has no costs
 };
 
-/// The region around the tolerances of a linearisation in which the programme may choose tolerances.
+/// The region around the tolerances of a linearisation in which the optimisation may choose tolerances.
 struct TrustRegion {
   /// [parts] Tolerances at the linearisation; empty: no trust region.
   std::span<const double> centre = {};
@@ -40,13 +40,15 @@ struct TrustRegion {
   double growth = std::numeric_limits<double>::infinity();
 };
 
-/// The result of a programme: tolerances, or the reason why there are none.
+/// The result of ToleranceProgramme::choose(): tolerances, or the reason why there are none.
 using ChoiceOfTolerances = std::variant<ChosenTolerances, Infeasible, Unbounded>;
 
-/// The optimisation problem of a study: the parts whose tolerances are sought, with their bounds, processes and costs.
+/// The optimisation problem (programme) of a study: the parts whose tolerances are sought, with their bounds, processes
+/// and costs.
 class ToleranceProgramme {
  public:
-  /// Refers to the study. A part without an upper bound gets one: a quarter of the size that Model::error_bound gives.
+  /// Keeps a reference to the study. A part without an upper bound gets one: a quarter of the size that
+  /// Model::error_bound gives.
   ToleranceProgramme(const Study& study, const Model& model);
 
   std::size_t size() const { return parts().size(); }  ///< The number of parts.
@@ -98,13 +100,14 @@ class ToleranceProgramme {
   /// Sets each orientation that the drawing does not need at `point` to the widest that the locations in `tolerance`
   /// [parts] allow.
   void keep_void(const TolerancePoint& point, std::span<double> tolerance) const;
-  /// Raises negative effects of zones of orientation on limits to the smallest value that a programme accepts (Within).
+  /// Raises negative effects of zones of orientation on limits to the smallest value that the optimisation accepts
+  /// (Within).
   void keep_allowed(ToleranceLimits& limits) const;
   /// The limits on the sums of mean squares that parts cause: room = (share x MeanSquares::room x wider)^2 minus the
   /// effect of fixed errors. at: [parts] tolerances at which the mean squares were measured.
   ToleranceLimits limits(const MeanSquares& squares, std::span<const double> at, double share,
                          double wider = 1.0) const;
-  /// Solves the programme of the study's aim under these limits.
+  /// Solves the optimisation problem of the study's aim under these limits.
   ChoiceOfTolerances choose(const ToleranceLimits& limits, const TrustRegion& region) const;
 
   /// The study in which the errors of the parts have these tolerances [parts].

@@ -117,8 +117,9 @@ inline constexpr std::string_view kRoundedDown = "rounded down";
 struct AllocationStage {
   std::string name;            ///< name of the stage: "linear", "tried on machines", "scaled to the yield", ...
   double cost = 0.0;           ///< total cost at the end of the stage; NaN if the aim has no costs
-  double lower_bound = 0.0;    ///< lower bound on the least cost in this stage's programme; NaN if the aim has no costs
-  double rms_share = 0.0;      ///< share of each limit that this stage's programme allowed as root mean square
+  double lower_bound = 0.0;    ///< lower bound on the least cost in the optimisation of this stage; NaN if the aim has
+                               ///< no costs
+  double rms_share = 0.0;      ///< share of each limit that the optimisation of this stage allowed as root mean square
   std::uint64_t machines = 0;  ///< machines tried at the tolerances of this stage; 0: none
   std::uint64_t rejects = 0;   ///< rejects among these machines
 };
@@ -176,7 +177,7 @@ struct AllocationResult {
   /// @}
 
   AtPoses multiplier;  ///< cost saved per unit by which the limit is wider at only this pose
-  AtPoses limit_use;   ///< predicted root mean square, divided by the largest one that the programme allows
+  AtPoses limit_use;   ///< predicted root mean square, divided by the largest one that the last optimisation allows
   /// The limit, SI. For a limit that is not on a magnitude: the smallest distance, over the poses, from the response of
   /// the mechanism with perfect parts to the nearer end.
   Array<double, axis::Response> limit;

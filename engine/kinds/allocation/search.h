@@ -40,7 +40,7 @@ std::uint64_t seed_of_others(const Study& study, SampleIndex set);
 
 /// The data that a search needs, which do not change between its stages.
 struct SearchProblem {
-  /// Refers to the run.
+  /// Keeps a reference to the run.
   explicit SearchProblem(const StudyRun& study_run);
 
   const StudyRun& run;                            ///< the study, its model and how it is run
@@ -61,11 +61,11 @@ struct Linearisation {
   MeanSquares squares;     ///< mean squares at these tolerances, and their slopes
 };
 
-/// The tolerances at some point of the search, and the solution of the last programme.
+/// The tolerances at some point of the search, and the solution of the last optimisation (ToleranceProgramme).
 struct Candidate {
   TolerancePoint point;     ///< the present tolerances
-  ChosenTolerances chosen;  ///< the solution of the last programme, with its lower bound and multipliers
-  double share = 0.0;       ///< the share of each limit that the last programme allowed as root mean square
+  ChosenTolerances chosen;  ///< the solution of the last optimisation, with its lower bound and multipliers
+  double share = 0.0;       ///< the share of each limit that the last optimisation allowed as root mean square
 };
 
 /// The machines of a design with the largest loads. Among them is the machine that decides whether the yield is kept.
@@ -77,7 +77,7 @@ struct ScreenedMachines {
 /// Tolerances, and the loads of the design's machines with them. The load of a machine is its largest ratio of a
 /// response to its limit (MachineLoads).
 struct ToleranceDesign {
-  Candidate candidate;        ///< the tolerances, with the last programme
+  Candidate candidate;        ///< the tolerances, with the solution of the last optimisation
   std::uint64_t seed = 0;     ///< the seed of the machines
   std::vector<double> load;   ///< [machines] loads from the last trial of all machines, updated for screened machines
   ScreenedMachines screened;  ///< screened machines with their loads at these tolerances; empty if the tolerances are
@@ -96,7 +96,7 @@ struct StageLog {
 
 /// The result of a search.
 struct FoundTolerances {
-  Linearisation linearisation;  ///< the linearisation in the last programme
+  Linearisation linearisation;  ///< the linearisation that the last optimisation used
   ToleranceDesign design;       ///< the tolerances, and the loads of the design's machines with them (MachineLoads)
   std::vector<double> coarser_yield;  ///< [parts] predicted yield if the tolerance of this part alone is larger, see
                                       ///< AllocationResult::coarser_yield
@@ -107,10 +107,10 @@ struct FoundTolerances {
 /// message names a limit and by how much it is exceeded.
 std::optional<FoundTolerances> find_tolerances(const SearchProblem& problem);
 
-/// The limits of the last programme of a search.
+/// The limits of the last optimisation of a search.
 ToleranceLimits limits_of(const SearchProblem& problem, const FoundTolerances& found);
 
-/// The cost that the last programme predicts if root mean squares may use `share` of each limit and all limits are
+/// The cost that the last optimisation predicts if root mean squares may use `share` of each limit and all limits are
 /// multiplied by `wider`. NaN if no tolerances keep these limits.
 double predicted_cost(const SearchProblem& problem, const FoundTolerances& found, double share, double wider);
 

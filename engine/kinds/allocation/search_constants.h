@@ -69,7 +69,7 @@ inline constexpr double kCoarserStep = 1.05;
 /// The number of machines near the limit from which the effect of a coarser part is estimated. With more machines, the
 /// predicted yield is less noisy.
 inline constexpr std::size_t kProbes = 700;
-/// The same number for parts of small effect. Each of these machines also has a mirrored machine.
+/// The number of machines near the limit for parts of small effect. Each of them also has a mirrored machine.
 inline constexpr std::size_t kProbesOfSmall = 3000;
 /// A part has a small effect if the loads of machines change by less than this times the relative change of its
 /// tolerance (root mean square).

@@ -31,11 +31,11 @@ Value unless_stopped(std::optional<Value> value) {
 /// a calibration takes its prior knowledge; empty: `tolerance`.
 Linearisation measure(const SearchProblem& problem, std::span<const double> tolerance, std::size_t draws,
                       std::span<const double> known = {});
-/// Solves the programme in which root mean squares may use this share of each limit. None if it is infeasible. Throws
-/// InputError if it is unbounded.
+/// Solves the optimisation problem (ToleranceProgramme) in which root mean squares may use this share of each limit.
+/// None if it is infeasible. Throws InputError if it is unbounded.
 std::optional<Candidate> choose(const SearchProblem& problem, const Linearisation& linearisation, double share,
                                 const TrustRegion& region);
-/// Solves the programme with the least share of limits between `low` and `high` for which it is feasible, to a
+/// Solves this problem with the least share of limits between `low` and `high` for which it is feasible, to a
 /// thousandth.
 std::optional<Candidate> choose_by_least_share(const SearchProblem& problem, const Linearisation& linearisation,
                                                double low, double high, const TrustRegion& region);
@@ -84,10 +84,10 @@ PartScores part_scores(const SearchProblem& problem, const ToleranceDesign& desi
                        std::span<const std::uint32_t> machines);
 /// @}
 
-/// Tolerances that a programme chose, and the mean squares (Linearisation) that it used.
+/// Tolerances that an optimisation chose, and the mean squares (Linearisation) that it used.
 struct Linearised {
-  Linearisation linearisation;  ///< the linearisation that the programme used
-  Candidate candidate;          ///< the tolerances that the programme chose
+  Linearisation linearisation;  ///< the linearisation that the optimisation used
+  Candidate candidate;          ///< the tolerances that the optimisation chose
 };
 
 /// Finds the tolerances that would keep the yield if every effect were linear and every response normal. If root mean
@@ -97,17 +97,18 @@ Linearised linearise(const SearchProblem& problem, StageLog& log);
 /// Tolerances that hardly change any more when effects are measured again.
 struct Settled {
   Linearisation linearisation;  ///< the last linearisation
-  Candidate candidate;          ///< the last tolerances, or the lowest ones if the last programme was infeasible
-  Candidate feasible;           ///< the last tolerances that a programme chose
+  Candidate candidate;          ///< the last tolerances, or the lowest ones if the last optimisation problem was
+                                ///< infeasible
+  Candidate feasible;           ///< the last tolerances that an optimisation chose
 };
 
-/// Measures effects at the present tolerances and solves the programme, in turn, until cost and tolerances hardly
+/// Measures effects at the present tolerances and optimises the tolerances, in turn, until cost and tolerances hardly
 /// change.
 Settled settle(const SearchProblem& problem, Linearised from, StageLog& log);
 
-/// Tolerances with which the design's machines keep the yield, and the mean squares that the programme used.
+/// Tolerances with which the design's machines keep the yield, and the mean squares that the optimisation used.
 struct Scaled {
-  Linearisation linearisation;  ///< the linearisation that the programme used
+  Linearisation linearisation;  ///< the linearisation that the optimisation used
   ToleranceDesign design;       ///< a design with at most the allowed number of rejects
 };
 

@@ -23,7 +23,7 @@ struct TypedNumber {
   std::function<double(std::span<const double> fitted)> value;
 };
 
-/// A machine that is calibrated from measurements. Refers to all members.
+/// A machine that is calibrated from measurements. The objects to which its members refer must outlive it.
 struct MachineToCalibrate {
   const Study& study;                     ///< the study, which has [analysis.calibration]
   const Model& model;                     ///< the model of its mechanism

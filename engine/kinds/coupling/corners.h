@@ -66,7 +66,7 @@ struct CornersAtPose {
 /// arguments. Owns the scratch memory of one thread.
 class CornerSearch {
  public:
-  /// Refers to all arguments. rounding: [responses x sizes] see coupling_rounding().
+  /// Keeps references to all arguments. rounding: [responses x sizes] see coupling_rounding().
   CornerSearch(const Model& model, const SolverOptions& solver, const PoseSet& poses, const CornerTable& table,
                const Array<double, axis::Response, axis::Size>& rounding);
 

@@ -157,7 +157,8 @@ ShownCells cells(const StoredResult& result) {
   return shown_cells(result, found.size_names.size() * (2 * found.subsets.size() + 3), result.signed_headline);
 }
 
-/// The curves of a coupling result over the poses, one panel for each response and size. Refers to its arguments.
+/// The curves of a coupling result over the poses, one panel for each response and size. Keeps references to its
+/// arguments.
 class Curves {
  public:
   Curves(const StoredResult& result, const PoseFigures& figures)

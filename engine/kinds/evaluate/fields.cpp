@@ -373,7 +373,7 @@ CsvTable case_sum_table(const StoredResult& result) {
   return table;
 }
 
-/// The result of `poesy evaluate`, and the errors in the columns of its table. Refers to both.
+/// The result of `poesy evaluate`, and the errors in the columns of its table. Keeps references to both.
 struct TableOfErrors {
   std::span<const FactorIndex> factors;
   const Evaluation& found;

@@ -20,7 +20,7 @@ namespace poesy {
 /// sums for each octal digit of this number (MergeTree).
 class MachineCollector {
  public:
-  /// Refers to both arguments.
+  /// Keeps references to both arguments.
   MachineCollector(const MachineTable& table, const Analysis& analysis);
 
   void add(std::size_t n, MachineUnit&& unit);  ///< Adds the next unit.

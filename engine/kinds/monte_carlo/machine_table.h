@@ -27,8 +27,8 @@ enum class UnitSize {
 /// have the same.
 class MachineTable {
  public:
-  /// Refers to the plan, the model and the calibration (null: machines are not calibrated). keep_all: whether to record
-  /// for every machine whether it is rejected. Precondition: the study draws errors per machine.
+  /// Keeps references to the plan, the model and the calibration (null: machines are not calibrated). keep_all: whether
+  /// to record for every machine whether it is rejected. Precondition: the study draws errors per machine.
   MachineTable(const Plan& plan, const Model& model, const Analysis& analysis,
                const MachineCalibration* calibration = nullptr, bool keep_all = false);
 

@@ -108,7 +108,7 @@ struct MachineUnit {
 /// one thread. The result of a unit depends only on the study and the unit.
 class MachineUnitEvaluator : private UnitSolver {
  public:
-  /// Refers to both arguments.
+  /// Keeps references to both arguments.
   MachineUnitEvaluator(const MachineTable& table, const Model& model);
 
   /// Solves the machines of unit n at all poses.

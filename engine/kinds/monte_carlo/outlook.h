@@ -4,8 +4,8 @@
 
 namespace poesy {
 
-/// The expected cost of a Monte Carlo study: solving, merging poses or units, and computing the result. Refers to the
-/// study, the model and the poses.
+/// The expected cost of a Monte Carlo study: solving, merging poses or units, and computing the result. It keeps
+/// references to the study, the model and the poses.
 Outlook monte_carlo_outlook(const Study& study, const Model& model, const PoseSet& poses);
 
 }  // namespace poesy

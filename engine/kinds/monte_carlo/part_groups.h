@@ -8,7 +8,7 @@
 #include "engine/study/plan.h"
 
 /// How the density of a machine's errors depends on the weight of each measured part in their distribution. Derivation:
-/// theory.md, "What few parts leave open".
+/// theory.md, "Uncertainty from few parts".
 namespace poesy {
 
 /// Errors that were measured on the same n parts: a single error, or a block of k correlated errors. Value i of each

@@ -15,7 +15,7 @@ namespace poesy {
 /// / dw_i], so only rejected machines are added.
 class PartSums {
  public:
-  /// Empty sums. Refers to the groups.
+  /// Empty sums. Keeps a reference to the groups.
   explicit PartSums(const PartGroups& groups);
 
   /// Adds machines. errors: [errors x machines], SI. rejected: [machines] 1 if rejected, otherwise 0.

@@ -24,7 +24,7 @@ namespace poesy {
 /// hold the data of errors whose poses it has only in part.
 class HistoryCollector {
  public:
-  /// Refers to the plan.
+  /// Keeps a reference to the plan.
   HistoryCollector(const Plan& plan, std::size_t responses, double conf_level);
 
   /// Adds the next unit of a cell (one error at one pose). within: [points x responses] local indices at the history
@@ -72,7 +72,7 @@ class HistoryCollector {
 /// the sums of a PoseFold (run/pose_fold.h). The result of a cell depends only on the order of its own units.
 class SensitivityCollector : public CellSums<CellStats> {
  public:
-  /// Collects the cells of this shard of the plan. Refers to the plan.
+  /// Collects the cells of this shard of the plan. Keeps a reference to the plan.
   SensitivityCollector(const Plan& plan, std::size_t responses, double conf_level, const Shard& shard = Shard());
 
   /// Adds a unit. Precondition: it is the next unit of its cell.

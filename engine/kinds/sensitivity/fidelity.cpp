@@ -110,7 +110,7 @@ std::optional<std::size_t> largest(const Measure& measure, std::size_t factor) {
 }
 
 /// Extends the list `columns` by two columns: each error's value of largest magnitude, in percent, and the response
-/// that has this value. Refers to the result and the measure.
+/// that has this value. Keeps references to the result and the measure.
 void add_largest(std::vector<FilledColumn>& columns, const StoredResult& result, const Measure& measure,
                  const std::string& name, int dispensable) {
   const auto value = [&measure](std::size_t p) {

@@ -153,7 +153,7 @@ void add_index(Columns& columns, const StoredResult& result, std::size_t r, cons
   columns.push_back(index_column(result, shown.high, r, name + "_high", "high", dispensable));
 }
 
-/// The columns of the table of ranked errors. Refers to both arguments.
+/// The columns of the table of ranked errors. Keeps references to both arguments.
 Columns ranked_columns(const StoredResult& result, const RankedErrors& ranked) {
   const std::size_t response = ranked.response;
   const Unit& unit = display(result.responses[response]);

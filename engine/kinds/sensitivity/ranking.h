@@ -23,7 +23,7 @@ struct RankedErrors {
 /// Orders the errors of a result for a response. Precondition: the result has the response.
 RankedErrors ranked_errors(const StoredResult& result, std::string_view response, RowOrder order = RowOrder::effect);
 
-/// Global indices by one estimator, with their intervals. Refers to the result.
+/// Global indices by one estimator, with their intervals. Keeps a reference to the result.
 struct GlobalIndices {
   const SensitivityResult::Indices& value;  ///< indices, SI
   const SensitivityResult::Indices& low;    ///< lower ends of the intervals
@@ -54,11 +54,11 @@ std::vector<std::size_t> responses_without_effect(const StoredResult& result);
 double effect(const StoredResult& result, std::size_t response, std::size_t factor);
 
 /// A column with global indices per unit of the error, or with the ends of their intervals. values: the numbers of the
-/// column, SI. Refers to the result and the values.
+/// column, SI. Keeps references to the result and the values.
 FilledColumn index_column(const StoredResult& result, const SensitivityResult::Indices& values, std::size_t response,
                           std::string name, std::string heading, int dispensable = 0);
 
-/// A column with the rank of each error; empty if the response does not vary. Refers to both arguments.
+/// A column with the rank of each error; empty if the response does not vary. Keeps references to both arguments.
 FilledColumn rank_column(const StoredResult& result, const RankedErrors& ranked, int dispensable);
 
 /// Tables with the errors in the chosen order:

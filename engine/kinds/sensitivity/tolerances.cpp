@@ -236,7 +236,7 @@ std::vector<std::string> notes(const StoredResult& result, const ResponseToleran
   return list;
 }
 
-/// The columns of the table of tolerances. Refers to both arguments.
+/// The columns of the table of tolerances. Keeps references to both arguments.
 std::vector<FilledColumn> columns(const StoredResult& result, const ResponseTolerances& tolerances) {
   const std::size_t r = tolerances.response;
   const SensitivityResult& found = sensitivity_of(result);

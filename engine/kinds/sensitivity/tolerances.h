@@ -45,7 +45,7 @@ void append_tolerance_tables(CsvTables& tables, const StoredResult& result);
 void add_tolerance_section(const StoredResult& result, Page& page);
 
 /// The lists of tolerances that are proposed. With a limit, one list for each way to share it; without, the tolerances
-/// of equal effect. Refers to the tolerances.
+/// of equal effect. Keeps a reference to the tolerances.
 std::vector<std::span<const double>> proposed_tolerances(const ResponseTolerances& tolerances);
 
 /// The largest sensible tolerance for each error of a sensitivity result, SI: a quarter of the dimension of the

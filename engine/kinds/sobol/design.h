@@ -34,7 +34,7 @@ class PanelDesign {
   /// The largest number of samples in a unit. Adaptive sampling decides only after whole units.
   static constexpr std::size_t kUnitSamples = 125;
 
-  /// Refers to the plan.
+  /// Keeps a reference to the plan.
   PanelDesign(const Plan& plan, const SobolOptions& asked);
 
   /// Whether all samples are independent. Otherwise only samples of different replicates are.

@@ -133,7 +133,7 @@ struct SplitDraws {
 /// of one thread.
 class PanelEvaluator {
  public:
-  /// Refers to all arguments.
+  /// Keeps references to all arguments.
   PanelEvaluator(const Plan& plan, const Model& model, const IndexPanel& panel, const PanelDesign& design);
 
   PanelSums operator()(const PanelUnit& unit);  ///< Solves a unit at all poses.

@@ -11,8 +11,8 @@
 
 namespace poesy {
 
-/// The first machines of a study, drawn again, whose errors can be scaled. Owns the scratch of one thread. Refers to
-/// the plan, the model and the vectors. Precondition: the study draws errors per machine.
+/// The first machines of a study, drawn again, whose errors can be scaled. Owns the scratch of one thread. Keeps
+/// references to the plan, the model and the vectors. Precondition: the study draws errors per machine.
 class WhatIfMachines : private UnitSolver {
  public:
   /// The components of all limited vectors (LimitedVector) at a pose, for each machine; NaN if the machine is not

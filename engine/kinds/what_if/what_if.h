@@ -22,7 +22,7 @@ struct SizedErrors {
   std::vector<double> costs = {};  ///< cost at each of what_if_factors(); empty: no cost is stated
 };
 
-/// A study of machines with limits, and its yield. Refers to study, model and poses.
+/// A study of machines with limits, and its yield. Keeps references to study, model and poses.
 struct JudgedMachines {
   const Study& study;                ///< the study, with draws per machine and without calibration by measurements
   const Model& model;                ///< the model of its mechanism
