@@ -73,9 +73,8 @@ struct AnyShape {
 /// one) and the curvature of the logarithm (dlog = 1 - ad/2 + ad^2/12). A Newton step is safe if the pivots of M are at
 /// least 1e-5 of the diagonal of N, and 2 N - M is positive definite too. Then Gauss-Newton contracts to the same root
 /// to which the Newton step leads. A sample goes through up to three passes of KernelPass:
-///     direct   Newton steps from the starting point. The pass gives up a sample at a step that is not safe or is
-///     larger
-///              than the options allow;
+///     direct   Newton steps from the starting point. The pass gives up a sample at a step that is not safe, or that is
+///              larger than the options allow;
 ///     follow   Gauss-Newton from nominal displacements, up to 8 max_iterations. A Newton step replaces the
 ///              Gauss-Newton step if it is safe and below 1e-3 and the Gauss-Newton step is below 2e-3. This pass finds
 ///              the root to which Gauss-Newton converges, if it converges. The pass gives up a sample whose
