@@ -23,7 +23,8 @@ constexpr int kMostRounds = 1000;    ///< largest number of rounds of weighted_m
 constexpr double kRest = 1e-15;      ///< weighted_median() ends when the gradient is below this share of the sum of
                                      ///< weights
 constexpr double kEqual = 1e-14;     ///< costs that differ by less than this share count as equal
-constexpr double kNearRest = 1e-12;  ///< a gradient below this share of the weights that grows is only rounding
+constexpr double kNearRest = 1e-12;  ///< if a gradient below this share of the sum of weights does not become smaller,
+                                     ///< the rest is rounding
 
 /// A vector perpendicular to an axis (m). In a zone between two planes, its second component is 0.
 struct Across {

@@ -201,8 +201,8 @@ std::size_t significant_digits(std::string_view number) {
   return first == std::string::npos ? 0 : digits.size() - first;
 }
 
-/// Gives the numbers of a column with a decimal point as many digits as the one with the most has: "2.630" beside
-/// "2.683". Digits that are added are zeros which rounding had removed.
+/// Gives the numbers of a column equally many digits: as many as the number with a decimal point that has most. So
+/// "2.63" beside "2.683" becomes "2.630". Only zeros are added, which rounding had removed.
 void even_digits(Table& table, std::size_t c) {
   std::size_t most = 0;
   for (const std::vector<Cell>& row : table.rows) {

@@ -34,7 +34,7 @@ bool many_not_converged(const StoredResult& result, std::uint64_t failed, std::u
 inline constexpr std::string_view kAssemblyAdvice =
     "more iterations do not help: keep a larger clearance to singular poses, or tighten the errors";
 
-/// Returns true if more than half of the unsolved samples cannot be assembled, so that they have no solution.
+/// Returns true if more than half of the unsolved samples are machines that cannot be assembled.
 bool mostly_impossible(const SolveCounts& solves);
 
 /// The reason why samples were not solved, as words that follow the number of these samples: "did not converge", or

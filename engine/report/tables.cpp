@@ -103,8 +103,9 @@ Cell value_beside(double value, const ValueLimit& limit, const Unit& unit) {
   return is_near ? number_cell(value / unit.si, kDigits) : number_cell(value / unit.si);
 }
 
-/// If some limit is more than a largest magnitude, adds a column with the lower ends of all limits and a column with
-/// the limits in words. Precondition: the last rows of the table are those of the limits.
+/// If some limit is not simply a largest magnitude at each pose (ValueLimit::is_plain), adds a column with the lower
+/// ends of all limits and a column with the limits in words. Precondition: the last rows of the table are those of the
+/// limits.
 void add_limit_words(const StoredResult& result, std::span<const LimitVerdict> limits, Table& table) {
   if (std::ranges::all_of(limits, [](const LimitVerdict& one) { return one.limit.is_plain(); })) return;
   const std::size_t before = table.rows.size() - limits.size();

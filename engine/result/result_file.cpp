@@ -306,7 +306,7 @@ SelectedPoses read_poses(const h5::File& file) {
 RunFacts read_facts(const h5::File& file) {
   RunFacts facts;
   read_fields(file, "/run", kFactFields, facts);
-  if (!file.exists("/run/all_samples")) return facts;  // of a version that solved every sample
+  if (!file.exists("/run/all_samples")) return facts;  // written by a version of poesy that solved every sample
   const auto samples = file.read<std::uint64_t>("/run/all_samples");
   if (samples.size() != 1 || samples[0] < facts.solves) throw h5::Error("/run/all_samples does not fit /run/solves");
   facts.by_series = samples[0] - facts.solves;

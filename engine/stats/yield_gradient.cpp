@@ -27,7 +27,7 @@ PowerSums power_sums(std::span<const std::size_t> rejects, const Score score) {
   return sums;
 }
 
-/// The sums for a normal error. Not inlined, so that its sums stay in registers.
+/// The sums for a normal error. Each function is not inlined, so that the compiler keeps its sums in registers.
 /// @{
 [[gnu::noinline]] PowerSums slope_sums(const NormalScore& score, std::span<const double> row,
                                        std::span<const std::size_t> rejects) {

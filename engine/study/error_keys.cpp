@@ -828,8 +828,8 @@ void check_sizes_of_features(const Study& study, const Reading& reading, std::sp
   }
 }
 
-/// The advice for an error that is too large. If its value is in m or rad, write another unit; if its values are
-/// measured, give deviations instead of sizes.
+/// The advice for an error that is too large: for measured values, to give deviations instead of sizes; for a quantity
+/// in m or rad, to write another unit; otherwise, to write a smaller one.
 static std::string smaller_remedy(const StudyValue& value, std::string_view key) {
   std::string remedy(kTooLargeRemedy);
   if (key == "column" || key == "values") return "give deviations from the nominal size, not sizes";

@@ -105,10 +105,10 @@ using ClosureObserver = std::function<void(const ClosureIteration&)>;
 Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::Vector3<double>& r, double orientation,
                     const SolverOptions& options, PlatformMotion& motion, const ClosureObserver& observe = {});
 
-/// Returns true if the limbs cannot be assembled. The mismatch of the limbs is minimised by descent from `start`
-/// (linalg::comes_to_rest()). If the limbs are then still apart by more than 1e-9 of |r|, the result is true: the three
-/// limbs of the 3-PRS do not over-constrain it, so in a machine that can be assembled the mismatch would vanish.
-/// Returns false if the descent does not converge.
+/// Returns true if the limbs cannot be assembled near `start`. From there, a descent (linalg::comes_to_rest()) leads to
+/// a minimum of the mismatch of the limbs. If the limbs are still apart by more than 1e-9 of |r| at the minimum, the
+/// result is true: the three limbs of the 3-PRS do not over-constrain it, so in a machine that can be assembled there
+/// the mismatch would vanish. Returns false if the descent does not converge.
 bool is_impossible(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::Vector3<double>& r,
                    const PlatformMotion& start);
 

@@ -266,7 +266,7 @@ void read(const h5::File& file, StoredResult& result) {
   check(found);
   found.solves = read_solver<decltype(found.solves)>(file);
   found.certificate.solves = found.total();
-  // The addresses of failed samples are valid in the certificate's own study, which can replay them.
+  // The pose and number of a failed sample are those in the certificate's own study, which can replay the sample.
   result.varied = {std::string(kAllFactors)};
   found.failures = read_failures(file, result);
   result.varied.clear();
@@ -407,7 +407,7 @@ CsvTable certificate_table(const Result& found) {
   return table;
 }
 
-/// A CSV table of the certificate's failed samples. Their addresses are those of the certificate's own study.
+/// A CSV table of the certificate's failed samples, with their poses and numbers in the certificate's own study.
 CsvTable certificate_failures(const Result& found) {
   const std::vector<Failure>& list = found.failures;
   return {"failures",

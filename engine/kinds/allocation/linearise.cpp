@@ -1,4 +1,4 @@
-// The first stages of the search: programmes under limits on root mean squares.
+// The first stages of the search: solving the programme with limits on root mean squares.
 
 #include <algorithm>
 #include <cmath>

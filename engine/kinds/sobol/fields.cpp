@@ -182,7 +182,7 @@ void read(const h5::File& file, StoredResult& result) {
   result.constant = constant_responses(found.varies);
   found.solves = read_solver(file, kByPose);
   result.convergence = read_convergence(file, kConvergence);
-  // The samples of other designs have no addresses, so they cannot be replayed.
+  // A sample of another design cannot be drawn again by its pose and number, so it cannot be replayed.
   if (study_setting(result.study_text, "analysis", "design") == "\"random\"")
     result.varied = {std::string(kAllFactors)};
   result.failures = read_failures(file, result);

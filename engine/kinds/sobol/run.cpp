@@ -207,7 +207,7 @@ SobolResult result_of(const Study& study, const IndexPanel& panel, const PanelSu
   leave_out_constant(panel, sums, rounding, found);
   found.solves = sums.solves;
   if (asked_of<SobolOptions>(study.analysis).design != Design::random)
-    return found;  // the samples of other designs have no addresses
+    return found;  // samples of other designs cannot be replayed
   for (std::size_t m = 0; m < panel.poses; ++m) {
     append_failures(0, PoseIndex(m), sums.failed[m], found.failures);
     found.failed_samples += sums.failures[m];
