@@ -175,7 +175,7 @@ void MachineCalibration::check_limits() const {
       throw InputError(
           table().place,
           "the limit on '" + response +
-              "' is not on the platform, and what a calibrated machine leaves is known of the platform only",
+              "' is not on the platform, and the error that remains after a calibration is known only for the platform",
           "remove the limit, or the calibration");
     }
   }

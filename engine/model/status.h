@@ -30,7 +30,7 @@ inline constexpr std::array<std::string_view, kStatusNames.size()> kStatusMeanin
     "still changing after the most iterations allowed",
     "the equations have no unique solution",
     "a value overflowed or became undefined",
-    "cannot be assembled: no way to close its loops exists",
+    "cannot be assembled: its loops do not close, or only past a singular pose",
     "computed from a series through solves, which further solves certified"};
 
 /// Returns true if a solve converged, to the tolerance or to rounding level, or if a certified series replaces it.

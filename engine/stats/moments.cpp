@@ -1,26 +1,18 @@
 #include "engine/stats/moments.h"
 
 #include <algorithm>
-#include <array>
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "engine/base/contract.h"
+#include "engine/base/eight_sums.h"
 #include "engine/base/instruction_sets.h"
 #include "engine/base/nan.h"
 
 namespace poesy {
 namespace {
-
-/// The number of partial sums. With eight sums, an addition need not wait for the previous one, and the sums fill whole
-/// vector registers. Value k is added to sum k mod 8 on every instruction set.
-constexpr std::size_t kSums = 8;
-using Sums = std::array<double, kSums>;
-
-double total(const Sums& sums) { return std::accumulate(sums.begin(), sums.end(), 0.0); }
 
 POESY_EACH_INSTRUCTION_SET double sum_of(std::span<const double> values) {
   Sums sums{};

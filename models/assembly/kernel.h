@@ -92,13 +92,13 @@ class AssemblyKernel {
   static constexpr double kWrenches = 1e-24;
   /// If the square of the relative change of the wrenches is below this, the change of the next round is predicted.
   static constexpr double kShortWrenches = 1e-14;
-  /// The predicted change of the next round must be below a share of the limit (tolerance or rounding); square of this
-  /// share.
+  /// A lane that is not yet within its limit (tolerance or rounding) has settled if the change that is predicted for
+  /// the next round is below 0.1 of this limit; square of 0.1.
   static constexpr double kNext = 1e-2;
   /// If the square of (move of this round / tolerance) is below this, the move of the next round is predicted.
   static constexpr double kShort = 1e12;
   static constexpr double kFarStart = 0.25;   ///< a lane is doubtful if its start_move() is above this
-  static constexpr double kMoves = 1e-20;     ///< a move whose square is below this is close to rounding and never slow
+  static constexpr double kMoves = 1e-20;     ///< a move whose square is below this is close to rounding, and not slow
   static constexpr double kSlow = 0.5625;     ///< square of the share of the previous move above which a move is slow
   static constexpr double kFarthest = 100.0;  ///< a lane has not settled if the square of its move is above this
 

@@ -1,5 +1,5 @@
 """Tolerances under limits: their certificate is what its own study finds, tables agree, same bits however they are run; what
-cannot be had, what is not certified, and what is refused."""
+cannot be reached, what is not certified, and what is refused."""
 
 import csv
 import json
@@ -205,7 +205,7 @@ class Allocation(ResumptionTest):
             self.refused(tight, "the limit of 0.01 mm on linear_deformation at pose ", "cannot be kept",
                          "with every tolerance at its lowest", "widen the limit", options=options)
             rare = bounded.replace("0.5 mm", "0.06 mm").replace("0.99", "0.995").replace("0.05 mm", "0.06 mm")
-            self.refused(rare, "99.5 % of the machines", "cannot be had", "of 2500 machines", options=options)
+            self.refused(rare, "99.5 % of the machines", "cannot be reached", "of 2500 machines", options=options)
         # Nothing is known before it runs.
         self.write("study.toml", tight)
         self.assertIn("# valid: ", self.succeeds("check", "study.toml"))

@@ -186,7 +186,7 @@ class Assembly(ProgramTest):
         self.assertGreater(found["solves"]["by_status"]["not_assembled"], 0)
         self.succeeds("report", "mc.h5", "-o", "r.html")
         report = (self.folder / "r.html").read_text()
-        self.assertIn("cannot be assembled: no way to close its loops exists", report)
+        self.assertIn("cannot be assembled: its loops do not close, or only past a singular pose", report)
         self.assertIn("larger clearance to singular poses", report)
         self.succeeds("export", "mc.h5", "-d", "csv")
         header, line = (self.folder / "csv/not_converged.csv").read_text().splitlines()

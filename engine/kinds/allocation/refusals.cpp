@@ -91,9 +91,10 @@ void refuse_infeasible(const SearchProblem& problem, const Infeasible& infeasibl
 void refuse_lowest(const SearchProblem& problem, std::uint64_t rejects) {
   throw InputError(
       {},
-      fmt::format("{} % of the machines within the limits cannot be had: with every tolerance at its lowest, {} of {} "
-                  "machines are not within them, and {} may be",
-                  100.0 * problem.options.yield, rejects, problem.run.study.analysis.samples, problem.allowed.design),
+      fmt::format(
+          "{} % of the machines within the limits cannot be reached: with every tolerance at its lowest, {} of {} "
+          "machines are not within them, and {} may be",
+          100.0 * problem.options.yield, rejects, problem.run.study.analysis.samples, problem.allowed.design),
       "widen a limit, ask for a smaller yield, or " + finer_parts(problem));
 }
 

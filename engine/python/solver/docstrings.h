@@ -11,15 +11,15 @@ inline constexpr char kModuleText[] = R"(What errors do to a mechanism, solved d
     errors = np.random.normal(0.0, 1e-4, (len(e.errors), 1000))
     responses = at_pose(errors)                    # (len(e.responses), 1000)
 
-All numbers are in SI: metres and radians, of poses, errors and responses. Arrays of errors and responses are
-factor-major: errors (P, B), a row for each error and a column for each sample, responses (R, B). They are float64,
-contiguous, and used where they stand; what does not fit is refused, never converted. Calls let other threads of Python
-run while they solve, and one evaluator may be called by several threads.)";
+All numbers are in SI: metres and radians, of poses, errors and responses. Errors are an array (P, B) with a row for
+each of P errors and a column for each of B samples; responses are an array (R, B). Arrays are float64 and contiguous,
+and they are used without a copy; other arrays are refused, never converted. While a call solves, other threads of
+Python can run, and several threads may call one evaluator.)";
 
-inline constexpr char kInputErrorText[] = "What was asked for cannot be: the program's own sentence. A ValueError.";
+inline constexpr char kInputErrorText[] = "The solver cannot do what was asked; the message says why. A ValueError.";
 inline constexpr char kWarningText[] =
     "Poses far outside the workspace, or geometry that may be a mistake. A UserWarning; once for each evaluator.";
-inline constexpr char kFileErrorText[] = "A file cannot be read: the program's own sentence. An OSError.";
+inline constexpr char kFileErrorText[] = "A file cannot be read; the message says why. An OSError.";
 
 inline constexpr char kStatusText[] = R"(How one solve ended: the numbers of status arrays, names as in result files.
 

@@ -395,7 +395,7 @@ TEST(ToleranceSearch, RefusesLowestTolerancesThatAreTooCoarse) {
             std::string::npos)
       << refusal_of(study);
   for (AllocatedPart& part : study.asked().parts) part.lo = 0.5;  // 0.534 is no three sigma
-  EXPECT_NE(refusal_of(study).find("99 % of the machines within the limits cannot be had"), std::string::npos)
+  EXPECT_NE(refusal_of(study).find("99 % of the machines within the limits cannot be reached"), std::string::npos)
       << refusal_of(study);
 }
 
