@@ -81,7 +81,8 @@ SelectedPoses grid_poses(const PoseSelection& selection, const Model& model, con
       return std::move(points).result();
     }
     const bool scarce = tested >= 2 * kMostInVain && 4 * feasible * most < selection.count * tested;
-    if (scarce || grid_size(number + 1, workspace.coordinates(), most) > most) points.fail(selection.place);
+    if (scarce || points.out_of_reach() || grid_size(number + 1, workspace.coordinates(), most) > most)
+      points.fail(selection.place);
   }
 }
 

@@ -176,12 +176,12 @@ using WatchSearch = std::function<bool(const PoseSearch&)>;
 /// Throws InputError if the box gives fewer poses than wanted: at the place of a joint limit if this limit is the most
 /// frequent reason of rejection, otherwise at the place of the selection. An interior search gives up after max(100
 /// 000, 100 count) candidates, or after 50 000 candidates in a row without a feasible one. For a boundary see
-/// boundary_poses(). A grid search gives up before a grid with more than max(100 000, 100 count) candidates. It also
-/// gives up after 100 000 candidates in all grids if, with the share of them that is feasible, the largest such grid
-/// would give less than a quarter of the poses.
-/// Throws InputError at count_place if poses of the boundary coincide up to rounding. Throws InputError for the first
-/// pose of a file or a trajectory that does not exist, is out of reach or exceeds max_condition: at the line of the
-/// file if the poses are the points of a file, otherwise at the study's trajectory.
+/// boundary_poses(). Every search gives up if the first 3000 candidates are all out of reach. A grid search gives up
+/// before a grid with more than max(100 000, 100 count) candidates. It also gives up after 100 000 candidates in all
+/// grids if, with the share of them that is feasible, the largest such grid would give less than a quarter of the
+/// poses. Throws InputError at count_place if poses of the boundary coincide up to rounding. Throws InputError for the
+/// first pose of a file or a trajectory that does not exist, is out of reach or exceeds max_condition: at the line of
+/// the file if the poses are the points of a file, otherwise at the study's trajectory.
 SelectedPoses select_poses(const PoseSelection& selection, const Model& model);
 
 /// Selects poses like select_poses() above, and reports progress to `watch`, which may be empty. None if `watch`

@@ -38,6 +38,22 @@ Judgement Workspace::judge(std::span<const double> pose) const {
           "move the workspace away from singular poses, or raise max_condition"};
 }
 
+std::string Workspace::apart() const {
+  const ModelDescription& model = model_->description();
+  for (std::size_t c = 0; c < std::min(model.pose_lower.size(), coordinates()); ++c) {
+    const Range& box = selection_->workspace[c];
+    const Range own{model.pose_lower[c], model.pose_upper[c]};
+    if (box.lower <= own.upper && box.upper >= own.lower) continue;
+    const PoseCoordinate& coordinate = model.pose_coordinates[c];
+    const auto text = [&](const Range& range) {
+      return "from " + readable_text({range.lower, coordinate.dimension}) + " to " +
+             readable_text({range.upper, coordinate.dimension});
+    };
+    return coordinate.name + " is " + text(box) + ", in the mechanism's workspace " + text(own);
+  }
+  return {};
+}
+
 void tell(const WatchSearch& watch, const PoseSearch& search) {
   if (watch && !watch(search)) throw SearchStopped();
 }
@@ -48,6 +64,7 @@ std::optional<double> PoseCollector::test(std::span<const double> pose) {
   ++in_vain_;
   tell(*watch_, {std::min(kept(), wanted_), wanted_, before_ + tested_});
   if (judgement.feasible()) return judgement.condition;
+  if (judgement.reason.starts_with(kOutOfReach)) ++unreached_;
   Count& count = rejected_[judgement.reason];
   ++count.count;
   count.last = judgement;
@@ -90,6 +107,7 @@ void PoseCollector::fail(const Place& workspace_place) const {
   const auto& [reason, rejected] = *most;
   problem += " (" + reason + ": " + std::to_string(rejected.count) + " of " + std::to_string(tested_) + " candidates)";
   if (kept() == 0) problem += ", or so small that none of these is in it";
+  if (const std::string apart = workspace_->apart(); kept() == 0 && !apart.empty()) problem += "; " + apart;
   throw InputError(*rejected.last.place, problem, rejected.last.remedy);
 }
 

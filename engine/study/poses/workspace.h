@@ -36,6 +36,9 @@ class Workspace {
   /// Converts one coordinate of a pose (SI) to its scaled coordinate.
   double scaled(std::size_t coordinate, double value) const;
   Judgement judge(std::span<const double> pose) const;  ///< Tells whether a pose (SI) is feasible.
+  /// Says in which coordinate the box is apart from the workspace that the mechanism states: "z is from 380 mm to 500
+  /// mm, in the mechanism's workspace from -500 mm to -380 mm". Empty if they overlap.
+  std::string apart() const;
 
  private:
   const PoseSelection* selection_;
@@ -50,6 +53,10 @@ void tell(const WatchSearch& watch, const PoseSearch& search);
 
 /// A search gives up after this many candidates in a row that gave no pose.
 inline constexpr std::size_t kMostInVain = 50'000;
+
+/// A search gives up after this many candidates if all of them are out of reach. They are fewer than kMostInVain,
+/// because it takes some 20 ms to find that a mechanism from a file does not reach a pose.
+inline constexpr std::size_t kMostOutOfReach = 3'000;
 
 /// Collects feasible poses, and counts infeasible ones by reason.
 class PoseCollector {
@@ -66,8 +73,10 @@ class PoseCollector {
 
   std::size_t kept() const { return condition_.size(); }  ///< The number of poses that are kept.
   std::size_t tested() const { return tested_; }          ///< The number of candidates that this object examined.
-  /// Returns true if no pose was kept during the last kMostInVain candidates.
-  bool in_vain() const { return in_vain_ >= kMostInVain; }
+  /// Returns true if the candidates so far are kMostOutOfReach or more, and all of them are out of reach.
+  bool out_of_reach() const { return tested_ >= kMostOutOfReach && unreached_ == tested_; }
+  /// Returns true if the search gives up: no pose was kept during the last kMostInVain candidates, or out_of_reach().
+  bool in_vain() const { return in_vain_ >= kMostInVain || out_of_reach(); }
   std::span<const double> pose(std::size_t m) const;  ///< The m-th pose that was kept, SI.
   void keep_first(std::size_t count);                 ///< Keeps only the first `count` poses.
   /// Keeps `count` of the poses, evenly spread over their order. Precondition: count <= kept().
@@ -91,7 +100,8 @@ class PoseCollector {
   std::vector<double> condition_;
   std::map<std::string, Count> rejected_;
   std::size_t tested_ = 0;
-  std::size_t in_vain_ = 0;  ///< number of candidates since the last pose that was kept
+  std::size_t unreached_ = 0;  ///< number of candidates that are out of reach
+  std::size_t in_vain_ = 0;    ///< number of candidates since the last pose that was kept
 };
 
 /// The poses of a selection from a file; see select_poses().
@@ -115,7 +125,7 @@ SelectedPoses trajectory_poses(const PoseSelection& selection, const Model& mode
 /// rounding. The numbers of rejected poses include the ends of the intervals.
 ///
 /// Throws InputError if max(20 000, 100 count) lines do not give enough poses, if kMostInVain examined points in a row
-/// give no pose, or if poses coincide up to rounding.
+/// give no pose, if the first kMostOutOfReach are all out of reach, or if poses coincide up to rounding.
 SelectedPoses boundary_poses(const PoseSelection& selection, const Model& model, const WatchSearch& watch = {});
 
 }  // namespace poesy

@@ -278,8 +278,10 @@ TEST_P(EmptyWorkspace, NamesTheLimitThatEmptiedIt) {
 TEST_P(EmptyWorkspace, SaysThatNothingIsReached) {
   PoseSelection selection = test::fake_box(GetParam(), 20);
   selection.workspace[0] = {0.1, 0.2};
-  test::expect_input_error([&] { select_poses(selection, kModel); }, selection.place,
-                           {"the workspace is empty (out of reach: z must be negative: ", "into reach"});
+  test::expect_input_error(
+      [&] { select_poses(selection, kModel); }, selection.place,
+      {"the workspace is empty (out of reach: z must be negative: ",
+       "; z is from 100 mm to 200 mm, in the mechanism's workspace from -300 mm to -180 mm", "into reach"});
 }
 
 TEST_P(EmptyWorkspace, SaysThatEveryPoseIsSingular) {
@@ -336,6 +338,18 @@ TEST_P(VainSearch, EndsInTime) {
   const test::RegionModel nowhere([](std::span<const double>) { return false; });
   std::size_t candidates = 0;
   EXPECT_THROW(select_poses(test::unit_cube(GetParam(), 20, 3), nowhere,
+                            [&](const PoseSearch& search) {
+                              candidates = search.candidates;
+                              return true;
+                            }),
+               InputError);
+  EXPECT_GE(candidates, 3'000u);
+  EXPECT_LE(candidates, 15'000u);
+}
+
+TEST_P(VainSearch, IsLongerWhereSomePosesAreReached) {
+  std::size_t candidates = 0;
+  EXPECT_THROW(select_poses(test::fake_box(GetParam(), 20), UndefinedCondition(),
                             [&](const PoseSearch& search) {
                               candidates = search.candidates;
                               return true;
