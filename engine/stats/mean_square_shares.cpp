@@ -13,13 +13,13 @@ namespace {
 constexpr double kSquaredRest = 5.0;
 
 /// Sums over the components of a vector, which are rows of a fit.
-struct Sums {
+struct FactorSums {
   double square = 0.0;  ///< sum of the squared slopes of one error
   double noise = 0.0;   ///< sum of the variances of these slopes
 };
 
-Sums sums_of(const LinearFit& fit, std::span<const std::size_t> rows, std::size_t error) {
-  Sums sums;
+FactorSums sums_of(const LinearFit& fit, std::span<const std::size_t> rows, std::size_t error) {
+  FactorSums sums;
   for (const std::size_t k : rows) {
     const std::size_t at = k * fit.errors + error;
     sums.square += fit.slope[at] * fit.slope[at];
@@ -58,7 +58,7 @@ MeanSquareShares mean_square_shares(const LinearFit& fit, std::span<const std::s
   bool varies = false;
   for (const std::size_t k : rows) rest += fit.rest[k];
   for (std::size_t p = 0; p < fit.errors; ++p) {
-    const Sums sums = sums_of(fit, rows, p);
+    const FactorSums sums = sums_of(fit, rows, p);
     const ErrorEffect& error = errors[p];
     const double own = std::max(0.0, sums.square - sums.noise);
     linear += own;
