@@ -198,6 +198,14 @@ std::string readable_setting(std::string_view value) {
   return begin == std::string::npos ? std::string() : text.substr(begin, text.find_last_not_of(' ') - begin + 1);
 }
 
+std::vector<std::pair<std::string, std::string>> readable_settings(std::string_view study_text) {
+  std::vector<std::pair<std::string, std::string>> list;
+  for (const StudySetting& one : study_settings(study_text)) {
+    if (!one.section.empty()) list.emplace_back(one.section + "." + one.key, readable_setting(one.value));
+  }
+  return list;
+}
+
 std::string readable_setting(std::string_view study_text, std::string_view section, std::string_view key) {
   return readable_setting(study_setting(study_text, section, key));
 }

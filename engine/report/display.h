@@ -100,6 +100,9 @@ inline constexpr std::string_view kTooSmall = "rounding";
 /// mm and deg.
 std::string readable_setting(std::string_view value);
 
+/// The full names and readable values of all settings of a resolved study, except those of no section, as its title.
+std::vector<std::pair<std::string, std::string>> readable_settings(std::string_view study_text);
+
 /// The value of a key of a section in a resolved study, as a text for people.
 std::string readable_setting(std::string_view study_text, std::string_view section, std::string_view key);
 

@@ -1,6 +1,7 @@
 #include "engine/report/merits.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +12,7 @@
 #include "engine/base/contract.h"
 #include "engine/report/display.h"
 #include "engine/report/report_kind.h"
+#include "engine/report/requirements.h"
 
 namespace poesy {
 namespace {
@@ -23,7 +25,7 @@ const Merit* find(std::span<const Merit> merits, std::string_view what) {
 }
 
 std::string_view word_of(Change verdict) {
-  constexpr std::array<std::string_view, 4> kWords{"better", "worse", "not told apart", ""};
+  constexpr std::array<std::string_view, 5> kWords{"better", "worse", "not told apart", "", ""};
   return kWords[static_cast<std::size_t>(verdict)];
 }
 
@@ -47,11 +49,15 @@ std::string interval_text(const Merit& a, const MeritChange& change) {
   return fmt::format(", interval {:+.3g} to {:+.3g}", scale * change.low, scale * change.high);
 }
 
+/// "the yield is 8.96 % in A and 15.7 % in B".
+std::string values_text(const Merit& a, const Merit& b, char letter) {
+  return fmt::format("the {} is {} in A and {} in {}", a.what, text_of(a, a.value), text_of(b, b.value), letter);
+}
+
 std::string sentence(const Merit& a, const Merit& b, char letter) {
   const MeritChange change = change_of(a, b);
   const std::string numbers =
-      fmt::format("the {} is {} in A and {} in {} ({}{})", a.what, text_of(a, a.value), text_of(b, b.value), letter,
-                  change_text(a, change), interval_text(a, change));
+      fmt::format("{} ({}{})", values_text(a, b, letter), change_text(a, change), interval_text(a, change));
   switch (change.verdict) {
     case Change::better:
       return fmt::format("{} is better: {}.", letter, numbers);
@@ -60,18 +66,20 @@ std::string sentence(const Merit& a, const Merit& b, char letter) {
     case Change::not_told_apart:
       return fmt::format("A and {} are not told apart: {}.", letter, numbers);
     case Change::without_interval:
+    case Change::other_requirements:
       break;
   }
   return fmt::format("T{}.", numbers.substr(1));
 }
 
-/// The names and readable values of all settings of a study, except format and title.
-std::vector<std::pair<std::string, std::string>> named_settings(const StoredResult& result) {
-  std::vector<std::pair<std::string, std::string>> list;
-  for (const StudySetting& one : study_settings(result.study_text)) {
-    if (!one.section.empty()) list.emplace_back(one.section + "." + one.key, readable_setting(one.value));
-  }
-  return list;
+/// Figures of merit without a verdict, by the reason for this: what differs, and a text on each figure of merit.
+using NoVerdicts = std::vector<std::pair<std::string, std::vector<std::string>>>;
+
+void add_no_verdict(const Merit& b, char letter, std::string text, NoVerdicts& list) {
+  std::string reason = others_text(b.others, letter);
+  auto at = std::ranges::find(list, reason, [](const auto& one) { return one.first; });
+  if (at == list.end()) at = list.insert(list.end(), {std::move(reason), {}});
+  at->second.push_back(std::move(text));
 }
 
 /// The names of the figures of merit that all results have, in the order of the first result.
@@ -96,7 +104,7 @@ std::vector<Cell> row_of(const Merit& first, const Merit& merit, std::size_t res
   const MeritChange change = result == 0 ? MeritChange{} : change_of(first, merit);
   return {text_cell(merit.what),
           text_cell(std::string(1, letter_of(result))),
-          text_cell(word_of(change.verdict)),
+          text_cell(merit.others.empty() ? std::string(word_of(change.verdict)) : "other " + topics_text(merit.others)),
           change_cell(change.value),
           change_cell(change.low),
           change_cell(change.high),
@@ -130,6 +138,14 @@ std::string remedy_text(const Merit& first, const Merit& merit, std::size_t resu
                                                   number_text(times, 2)));
   }
   return text;
+}
+
+/// The caption of the table of these figures of merit. first: name of the first of them.
+std::string merits_caption(std::span<const std::vector<Merit>> results, const std::string& first) {
+  if (results.size() > 2) return "Which is better: each against A";
+  const std::vector<OtherRequirement>& others = find(results[1], first)->others;
+  if (others.empty()) return "Which is better: B against A";
+  return fmt::format("Which is better: no verdict on the {}, because the {} differ", first, topics_text(others));
 }
 
 }  // namespace
@@ -169,7 +185,10 @@ std::vector<std::vector<Merit>> compared_merits(const ReportKind& kind, std::spa
     return std::vector<std::vector<Merit>>(results.size());
   const std::string response = compared_response(results);
   std::vector<std::vector<Merit>> found;
-  for (const StoredResult* result : results) found.push_back(kind.merits(*result, response));
+  for (const StoredResult* result : results) {
+    found.push_back(kind.merits(*result, response));
+    for (Merit& merit : found.back()) merit.others = other_requirements(*results.front(), *result, merit.what);
+  }
   return found;
 }
 
@@ -177,8 +196,11 @@ MeritChange change_of(const Merit& a, const Merit& b) {
   MeritChange change{.value = b.value - a.value};
   change.low = change.value - std::hypot(b.value - b.low, a.high - a.value);
   change.high = change.value + std::hypot(b.high - b.value, a.value - a.low);
-  if (std::isnan(change.low) || std::isnan(change.high)) return change;
-  if (change.low <= 0.0 && change.high >= 0.0) {
+  if (!b.others.empty()) {
+    change.verdict = Change::other_requirements;
+  } else if (std::isnan(change.low) || std::isnan(change.high)) {
+    change.verdict = Change::without_interval;
+  } else if (change.low <= 0.0 && change.high >= 0.0) {
     change.verdict = Change::not_told_apart;
   } else {
     change.verdict = (change.value > 0.0) == a.most_best ? Change::better : Change::worse;
@@ -190,7 +212,7 @@ std::optional<Table> merits_table(std::span<const std::vector<Merit>> results) {
   const std::vector<std::string> shared = shared_merits(results);
   if (shared.empty()) return std::nullopt;
   Table table{.name = "merits",
-              .caption = results.size() == 2 ? "Which is better: B against A" : "Which is better: each against A",
+              .caption = merits_caption(results, shared.front()),
               // A narrow page hides the last columns first.
               .columns = {text_column("quantity", "quantity"), text_column("result", "in"),
                           text_column("verdict", "verdict"), number_column("change", "change"),
@@ -199,26 +221,42 @@ std::optional<Table> merits_table(std::span<const std::vector<Merit>> results) {
                           number_column("high", "high", "", 1), text_column("unit", "unit")},
               .notes = {"low, high: intervals of the value, and of its change as if both results were drawn "
                         "independently; common draws make it wider than it need be"}};
+  NoVerdicts no_verdicts;
   for (const std::string& what : shared) {
     const Merit& first = *find(results.front(), what);
     for (std::size_t n = 0; n < results.size(); ++n) {
       const Merit& merit = *find(results[n], what);
       table.rows.push_back(row_of(first, merit, n));
+      if (!merit.others.empty()) add_no_verdict(merit, letter_of(n), what, no_verdicts);
       std::string remedy = n == 0 ? std::string() : remedy_text(first, merit, n);
       if (!remedy.empty()) table.notes.push_back(std::move(remedy));
     }
     if (!first.note.empty()) table.notes.push_back(first.note);
   }
+  for (const auto& [reason, merits] : no_verdicts) {
+    table.notes.push_back(fmt::format("no verdict on {}, because {}", fmt::join(merits, " and "), reason));
+  }
   return table;
 }
 
 std::string merit_sentences(const std::vector<Merit>& a, const std::vector<Merit>& b, char letter) {
-  std::string text;
+  std::vector<std::string> sentences;
+  NoVerdicts no_verdicts;
   for (const Merit& merit : a) {
     const Merit* other = find(b, merit.what);
-    if (other != nullptr) text += (text.empty() ? "" : " ") + sentence(merit, *other, letter);
+    if (other == nullptr) continue;
+    if (other->others.empty()) {
+      sentences.push_back(sentence(merit, *other, letter));
+    } else {
+      add_no_verdict(*other, letter, values_text(merit, *other, letter), no_verdicts);
+    }
   }
-  return text;
+  std::vector<std::string> first;
+  for (const auto& [reason, values] : no_verdicts) {
+    first.push_back(fmt::format("No verdict, because {}: {}.", reason, fmt::join(values, "; ")));
+  }
+  sentences.insert(sentences.begin(), first.begin(), first.end());
+  return fmt::format("{}", fmt::join(sentences, " "));
 }
 
 Table settings_table(const StoredResult& a, const StoredResult& b, std::size_t other, bool same) {
@@ -226,8 +264,8 @@ Table settings_table(const StoredResult& a, const StoredResult& b, std::size_t o
               .caption = same ? "Settings that are the same" : "Settings that differ",
               .columns = {text_column("setting", "setting"), text_column("a", "A"),
                           text_column("b", std::string(1, letter_of(other)))}};
-  const auto list_a = named_settings(a);
-  const auto list_b = named_settings(b);
+  const auto list_a = readable_settings(a.study_text);
+  const auto list_b = readable_settings(b.study_text);
   const std::map<std::string, std::string> of_a(list_a.begin(), list_a.end());
   const std::map<std::string, std::string> of_b(list_b.begin(), list_b.end());
   const auto add = [&](const std::string& name, const std::string& in_a, const std::string& in_b) {

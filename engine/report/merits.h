@@ -16,6 +16,17 @@ namespace poesy {
 
 struct ReportKind;
 
+/// A setting in which two studies ask for something else, so that a figure of merit does not say which design is
+/// better.
+struct OtherRequirement {
+  std::string_view topic;  ///< what the setting requires: "limits", "wanted yields", "draws" or "poses"
+  std::string name;        ///< full name of the setting: "analysis.limits.gap"
+  std::string in_a;        ///< value in result A, for people; empty: none
+  std::string in_b;        ///< value in the other result, for people; empty: none
+
+  bool operator==(const OtherRequirement&) const = default;  ///< Returns true if all members are equal.
+};
+
 /// A figure of merit: one number of a result by which designs are compared, such as a yield, a total or a cost.
 struct Merit {
   std::string what;        ///< what the number is: "yield", "cost of all parts"
@@ -26,10 +37,15 @@ struct Merit {
   bool most_best = false;  ///< true if a larger value is better, false if a smaller one is
   bool narrows = true;     ///< true if more samples make its interval narrower
   std::string note = {};   ///< a sentence on what its interval does not contain; empty: none
+  /// Requirements in which the result differs from the first of the compared results; empty: none.
+  std::vector<OtherRequirement> others = {};
 };
 
 /// What the yield is called as a figure of merit.
 inline constexpr std::string_view kYieldMerit = "yield";
+
+/// What the cost of an allocation is called as a figure of merit.
+inline constexpr std::string_view kCostMerit = "cost of all parts";
 
 /// The largest number of results that can be compared, because letters name them.
 inline constexpr std::size_t kMostResults = 26;
@@ -52,7 +68,7 @@ Merit yield_merit(const YieldVerdict& yield);
 std::vector<std::vector<Merit>> compared_merits(const ReportKind& kind, std::span<const StoredResult* const> results);
 
 /// The verdict on a change of a figure of merit from one result to another.
-enum class Change { better, worse, not_told_apart, without_interval };
+enum class Change { better, worse, not_told_apart, without_interval, other_requirements };
 
 /// The change of a figure of merit from result A, where its value is a, to result B, where its value is b.
 struct MeritChange {
@@ -65,7 +81,7 @@ struct MeritChange {
 /// The change from a to b. Its interval is made from the intervals of both values (Zou and Donner 2008, Statistics in
 /// Medicine 27, 1693-1702; for shares, Newcombe 1998, ibid. 17, 873-890), as if the values were independent. If both
 /// results use the same draws, so that both values deviate in the same direction, the interval is too wide, never too
-/// narrow.
+/// narrow. The verdict is Change::other_requirements if b has other requirements than a.
 MeritChange change_of(const Merit& a, const Merit& b);
 
 /// A table of the figures of merit that all results have, with a row for each result and its change from the first
@@ -74,8 +90,9 @@ MeritChange change_of(const Merit& a, const Merit& b);
 std::optional<Table> merits_table(std::span<const std::vector<Merit>> results);
 
 /// A sentence on each figure of merit that both results have: "B is better: the yield is 8.96 % in A and 15.7 % in B
-/// (+6.74 percentage points, interval +5.5 to +8.0)." Empty if they have none in common. letter: the letter of the
-/// second result.
+/// (+6.74 percentage points, interval +5.5 to +8.0)." Figures of merit with other requirements come first, without a
+/// verdict: "No verdict, because the limits differ (analysis.limits.gap: 0.15 mm in A, 0.2 mm in B): the yield is 81.3
+/// % in A and 96.3 % in B." Empty if they have none in common. letter: the letter of the second result.
 std::string merit_sentences(const std::vector<Merit>& a, const std::vector<Merit>& b, char letter = 'B');
 
 /// A table of the settings of the studies of two results, in the order of the first result, a: the settings that are

@@ -6,17 +6,19 @@
 
 #include "engine/report/display.h"
 #include "engine/report/merits.h"
+#include "engine/report/requirements.h"
 
 namespace poesy {
 namespace {
 
 bool has_yield(const StoredResult& result) { return result.verdicts && result.verdicts->yield; }
 
-/// The keys that have different values in two studies; none if a key is in only one of them.
+/// The keys that have different values in two studies; none if a key is in only one of them, or if their yields do not
+/// compare because a key is a requirement.
 std::vector<std::string> keys_that_differ(const StoredResult& a, const StoredResult& b) {
   std::vector<std::string> keys;
   for (const std::vector<Cell>& row : settings_table(a, b, 1, false).rows) {
-    if (row[1].text == "-" || row[2].text == "-") return {};
+    if (row[1].text == "-" || row[2].text == "-" || !required_by(row[0].text, kYieldMerit).empty()) return {};
     if (!row[0].text.starts_with("run.")) keys.push_back(row[0].text);
   }
   return keys;

@@ -73,6 +73,21 @@ class Compare(ProgramTest):
         page = (self.folder / "three.html").read_text()
         self.assertIn("A and C are not told apart: the yield is ", page)
 
+    def test_no_verdict_under_other_limits_or_poses(self):
+        study = (self.folder / "a.toml").read_text()
+        self.write("wider.toml", study.replace('"0.04 mm"', '"0.05 mm"'))
+        self.write("edge.toml", study.replace("count = 6", 'count = 6\nselect = "boundary"'))
+        for name in ("wider", "edge"):
+            self.succeeds("run", f"{name}.toml", "--quiet")
+        merits = json.loads(self.succeeds("show", "a.h5", "wider.h5", "edge.h5", "--json"))["tables"][0]["rows"]
+        self.assertEqual([row["verdict"] for row in merits if row["quantity"] == "yield"], ["-", "other limits", "other poses"])
+        self.succeeds("report", "a.h5", "wider.h5", "-o", "two.html")
+        page = (self.folder / "two.html").read_text()
+        self.assertIn("No verdict, because the limits differ (analysis.limits.gap: 0.04 mm in A, 0.05 mm in B): the yield is ", page)
+        self.assertIn("No change", page)
+        for words in ("B is better: ", "A is better: ", "Largest change", "'poesy sweep' judges"):
+            self.assertNotIn(words, page)
+
     def test_equal_warnings_are_one(self):
         for name in ("a", "b"):
             study = (self.folder / f"{name}.toml").read_text()

@@ -157,6 +157,16 @@ class Sweep(ProgramTest):
         self.succeeds("report", "sweep.h5", "-o", "sweep.html")
         self.assertIn("sigma = 0.02 deg", (self.folder / "sweep.html").read_text())
 
+    def test_no_best_design_of_other_limits(self):
+        self.swept(keys=("analysis.limits.gap=0.04,0.05 mm", "errors.angular.sigma=0.01,0.005 deg"))
+        rows = json.loads(self.succeeds("show", "sweep.h5", "--json"))["tables"][0]["rows"]
+        self.assertEqual([row["verdict"] for row in rows[1:]], ["better", "other limits", "other limits"])
+        self.succeeds("report", "sweep.h5", "-o", "sweep.html")
+        page = (self.folder / "sweep.html").read_text()
+        self.assertIn("No design is called best, because the limits differ (gap): the yield is ", page)
+        self.assertIn("Compare designs with the same limits.", page)
+        self.assertNotIn("The yield is largest", page)
+
     def test_show_export_and_report(self):
         self.swept()
         text = " ".join(self.succeeds("show", "sweep.h5").split())

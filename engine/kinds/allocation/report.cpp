@@ -303,7 +303,7 @@ Comparable comparable(const StoredResult& result, const StoredResult& other) {
 std::vector<Merit> merits(const StoredResult& result, std::string_view) {
   const Result& found = allocation_of(result);
   if (!has_costs(found)) return {};
-  return {{.what = "cost of all parts",
+  return {{.what = std::string(kCostMerit),
            .value = found.total_cost,
            .note =
                "the cost has no interval: a search with another seed finds other tolerances at another cost; poesy run "

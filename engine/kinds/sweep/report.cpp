@@ -13,6 +13,7 @@
 #include "engine/kinds/sweep/result.h"
 #include "engine/report/display.h"
 #include "engine/report/merits.h"
+#include "engine/report/requirements.h"
 #include "engine/report/sources.h"
 #include "engine/report/tables.h"
 
@@ -50,9 +51,30 @@ std::string unit_of_change(const SweepResult& found, std::size_t q) {
   return unit == "%" ? " percentage points" : unit.empty() ? "" : " " + unit;
 }
 
-/// The verdict on design d compared with the first one: "better", "worse", or "not told apart" if the interval of the
-/// change includes zero.
-std::string_view verdict_on_change(const SweepResult& found, std::size_t q, std::size_t d) {
+/// What the keys require that differ between designs d and e, if figure of merit q depends on it: "limits". Empty if
+/// the designs compare by it.
+std::string_view required_otherwise(const SweepResult& found, std::size_t q, std::size_t d, std::size_t e) {
+  for (std::size_t k = 0; k < found.keys.size(); ++k) {
+    const std::string_view topic = required_by(found.keys[k], found.quantities[q]);
+    if (!topic.empty() && found.value(d, k) != found.value(e, k)) return topic;
+  }
+  return {};
+}
+
+/// What some design requires otherwise than the first one: "limits". Empty if all designs compare by figure of merit q.
+std::string_view required_otherwise(const SweepResult& found, std::size_t q) {
+  for (std::size_t d = 1; d < found.designs(); ++d) {
+    if (const std::string_view topic = required_otherwise(found, q, d, 0); !topic.empty()) return topic;
+  }
+  return {};
+}
+
+/// The verdict on design d compared with the first one: "better", "worse", "not told apart" if the interval of the
+/// change includes zero, or "other limits" if the designs do not compare.
+std::string verdict_on_change(const SweepResult& found, std::size_t q, std::size_t d) {
+  if (const std::string_view topic = required_otherwise(found, q, d, 0); !topic.empty()) {
+    return fmt::format("other {}", topic);
+  }
   const double low = found.change_low(q, d);
   const double high = found.change_high(q, d);
   if (std::isnan(low) || std::isnan(high)) return "";
@@ -78,9 +100,29 @@ std::string names_of_keys(const SweepResult& found) {
   return text;
 }
 
+/// "42.3 % at tip_position = 0.1 mm".
+std::string at_design(const SweepResult& found, std::size_t q, std::size_t d) {
+  return fmt::format("{} at {}", value_text(found, q, found.merit(q, d)), design_name(found, d));
+}
+
+/// A sentence on designs that do not compare: "No design is called best, because the limits differ (tip_position): the
+/// yield is 42.3 % at tip_position = 0.1 mm, the first design, and 96.3 % at tip_position = 0.2 mm, the last."
+std::string no_best_text(const SweepResult& found, std::size_t q, std::string_view topic) {
+  std::vector<std::string> keys;
+  for (std::size_t k = 0; k < found.keys.size(); ++k) {
+    if (!required_by(found.keys[k], found.quantities[q]).empty()) keys.push_back(short_key(found, k));
+  }
+  return fmt::format(
+      "No design is called best, because the {} differ ({}): the {} is {}, the first design, and {}, the "
+      "last.",
+      topic, fmt::join(keys, ", "), found.quantities[q], at_design(found, q, 0),
+      at_design(found, q, found.designs() - 1));
+}
+
 /// A sentence on the best design: "The yield is largest at R = 375 mm: 78.9 %; at R = 150 mm it is 14.1 % (+64.8
 /// percentage points, interval +63.5 to +66.1)."
 std::string best_text(const SweepResult& found, std::size_t q) {
+  if (const std::string_view topic = required_otherwise(found, q); !topic.empty()) return no_best_text(found, q, topic);
   const std::optional<std::size_t> best = best_design(found, q);
   if (!best) return fmt::format("The {} is not known of any design.", found.quantities[q]);
   std::string text =
@@ -162,6 +204,11 @@ Table quantity_table(const SweepResult& found, std::size_t q) {
                        [&, q](std::size_t d) { return text_cell(verdict_on_change(found, q, d)); }});
     table.notes.push_back(interval_note(found, q));
   }
+  if (const std::string_view topic = required_otherwise(found, q); !topic.empty()) {
+    table.notes.push_back(fmt::format(
+        "other {0}: a {1} under other {0} does not say which design is better; sweep other keys with the same {0}",
+        topic, found.quantities[q]));
+  }
   if (std::ranges::any_of(found.verdict.all(), [](const std::string& verdict) { return verdict != "none"; })) {
     columns.push_back(
         {text_column("limits", "limits"), [&](std::size_t d) { return text_cell(limits_word(found.verdict(d))); }});
@@ -191,19 +238,27 @@ SolveTally tally(const StoredResult& result) {
   return {"design", design_names(found), 1, found.solves};
 }
 
+/// Advice that follows from the best design by the first figure of merit.
+std::string advice(const SweepResult& found) {
+  const std::size_t q = 0;
+  if (const std::string_view topic = required_otherwise(found, q); !topic.empty()) {
+    return fmt::format("Compare designs with the same {}.", topic);
+  }
+  const std::optional<std::size_t> best = best_design(found, q);
+  const bool at_an_end = best && (*best == 0 || *best + 1 == found.designs());
+  return at_an_end ? "The best design is at an end of the sweep: look beyond it."
+                   : "The best design lies within the sweep: look closer around it.";
+}
+
 Answer answer(const StoredResult& result) {
   const SweepResult& found = sweep_of(result);
   std::string best;
   for (std::size_t q = 0; q < found.quantities.size(); ++q) best += (q == 0 ? "" : " ") + best_text(found, q);
   const bool paired = std::ranges::any_of(found.is_paired.all(), [](std::uint8_t is) { return is != 0; });
-  const std::size_t q = 0;
-  const std::optional<std::size_t> first_best = best_design(found, q);
-  const bool at_an_end = first_best && (*first_best == 0 || *first_best + 1 == found.designs());
   return {{"Answer", best},
           {"How sure", paired ? "All designs have the same machines, so their differences are surer than their values."
                               : "All designs draw the same errors."},
-          {"What to do", at_an_end ? "The best design is at an end of the sweep: look beyond it."
-                                   : "The best design lies within the sweep: look closer around it."}};
+          {"What to do", advice(found)}};
 }
 
 /// Designs as points of curves over the first key, with a curve for each combination of the other keys' values.

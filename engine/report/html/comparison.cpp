@@ -249,9 +249,14 @@ Answer comparison_answer(const Comparison& compared) {
         "Answer", fmt::format("{}, {}: the largest is that of {} in A ({}) and of {} in B ({}).", a.options.front(),
                               in_a.label, a.items[top_a], value(in_a, top_a), a.items[top_b], value(in_b, top_b)));
   }
-  lines.emplace_back(a.ranked ? "Largest change" : "Answer",
-                     fmt::format("{}: {}, {}, from {} to {}.", a.options.front(), a.items[most], in_a.label,
-                                 value(in_a, most), value(in_b, most)));
+  if (in_a.value[most] == in_b.value[most] || change_of(in_a.value[most], in_b.value[most]) == 0.0) {
+    lines.emplace_back("No change",
+                       fmt::format("{}, {}: A and B have the same values.", a.options.front(), in_a.label));
+  } else {
+    lines.emplace_back(a.ranked ? "Largest change" : "Answer",
+                       fmt::format("{}: {}, {}, from {} to {}.", a.options.front(), a.items[most], in_a.label,
+                                   value(in_a, most), value(in_b, most)));
+  }
   if (!in_a.low.empty() && !in_b.low.empty()) {
     std::size_t apart = 0;
     for (std::size_t p = 0; p < items; ++p) apart += overlap(in_a, in_b, p) == "apart" ? 1 : 0;

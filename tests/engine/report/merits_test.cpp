@@ -6,6 +6,7 @@
 #include <random>
 
 #include "engine/report/report_kind.h"
+#include "engine/report/requirements.h"
 #include "engine/stats/proportion.h"
 
 namespace poesy {
@@ -116,6 +117,90 @@ TEST(Merits, SayHowManySamplesWouldTellThemApart) {
 TEST(Merits, SayWhatHasNoInterval) {
   const Merit cost{.what = "cost", .value = 450.0, .note = "the cost has no interval"};
   EXPECT_EQ(notes_on(cost, {.what = "cost", .value = 466.0}), std::vector<std::string>{"the cost has no interval"});
+}
+
+TEST(Merits, HaveNoVerdictUnderOtherRequirements) {
+  const Merit yield{"yield", "%", 90.0, 89.0, 91.0, true};
+  Merit wider{"yield", "%", 95.0, 94.0, 96.0, true};
+  wider.others = {{"limits", "analysis.limits.gap", "0.15 mm", "0.2 mm"}, {"limits", "analysis.limits.x", "1 mm", ""}};
+  const Merit rms{.what = "rms", .unit = "mm", .value = 2.0};
+  EXPECT_EQ(change_of(yield, wider).verdict, Change::other_requirements);
+  EXPECT_EQ(
+      merit_sentences({rms, yield}, {rms, wider}),
+      "No verdict, because the limits differ (analysis.limits.gap: 0.15 mm in A, 0.2 mm in B; analysis.limits.x: 1 "
+      "mm in A, none in B): the yield is 90 % in A and 95 % in B. The rms is 2 mm in A and 2 mm in B (+0 %).");
+  const Table table = merits_table(std::vector<std::vector<Merit>>{{yield}, {wider}}).value();
+  EXPECT_EQ(table.caption, "Which is better: no verdict on the yield, because the limits differ");
+  EXPECT_EQ(table.rows[1][2].text, "other limits");
+  EXPECT_EQ(table.notes.back(),
+            "no verdict on yield, because the limits differ (analysis.limits.gap: 0.15 mm in A, 0.2 mm in B; "
+            "analysis.limits.x: 1 mm in A, none in B)");
+  Merit elsewhere = rms;
+  elsewhere.others = {{"poses", "poses.workspace", std::string(50, 'x'), "z = [0 mm, 1 mm]"}};
+  EXPECT_EQ(merit_sentences({rms}, {elsewhere}),
+            "No verdict, because the poses differ (poses.workspace): the rms is 2 mm in A and 2 mm in B.");
+}
+
+/// A result with this study, and with a pose at this place.
+StoredResult result_of(std::string study, double place) {
+  StoredResult result;
+  result.study_text = std::move(study);
+  result.poses = PoseSet(1, {place});
+  return result;
+}
+
+TEST(OtherRequirements, AreLimitsOfYieldsAndPosesOfAll) {
+  const StoredResult a =
+      result_of("[poses]\nselect = \"boundary\"\ncount = 2\n[analysis]\nlimits.gap = \"0.001 m\"\n", 0.0);
+  const StoredResult wider =
+      result_of("[poses]\nselect = \"boundary\"\ncount = 3\n[analysis]\nlimits.gap = \"0.002 m\"\n", 1.0);
+  using List = std::vector<OtherRequirement>;
+  EXPECT_EQ(other_requirements(a, wider, kYieldMerit), (List{{"limits", "analysis.limits.gap", "1 mm", "2 mm"}}));
+  EXPECT_EQ(other_requirements(a, wider, "root mean square of gap"), List());
+  StoredResult elsewhere =
+      result_of("[poses]\nselect = \"interior\"\ncount = 2\n[analysis]\nlimits.gap = \"0.001 m\"\n", 1.0);
+  const List poses{{"poses", "poses.select", "boundary", "interior"}};
+  EXPECT_EQ(other_requirements(a, elsewhere, kYieldMerit), poses);
+  EXPECT_EQ(other_requirements(a, elsewhere, "root mean square of gap"), poses);
+  elsewhere.poses = a.poses;
+  EXPECT_EQ(other_requirements(a, elsewhere, kYieldMerit), List());
+}
+
+TEST(OtherRequirements, AreTheContentOfAFileOfPoses) {
+  const std::string study = "[poses]\nselect = \"file\"\nfile = \"p.csv\"\n";
+  EXPECT_TRUE(other_requirements(result_of(study, 0.0), result_of(study, 0.0), kYieldMerit).empty());
+  EXPECT_EQ(topics_text(other_requirements(result_of(study, 0.0), result_of(study, 1.0), kYieldMerit)), "poses");
+}
+
+TEST(OtherRequirements, AreNotTheNumberOfPosesOfATrajectory) {
+  const auto study = [](const std::string& rest) {
+    return "[poses]\nselect = \"trajectory\"\ntrajectory = { curve = \"circle\", " + rest + " }\n";
+  };
+  const StoredResult a = result_of(study("points = 3, time = [\"0 s\", \"2 s\"]"), 0.0);
+  EXPECT_TRUE(
+      other_requirements(a, result_of(study("points = 9, time = [\"0 s\", \"2 s\"]"), 1.0), kYieldMerit).empty());
+  EXPECT_FALSE(
+      other_requirements(a, result_of(study("points = 3, time = [\"0 s\", \"1 s\"]"), 1.0), kYieldMerit).empty());
+}
+
+TEST(OtherRequirements, AreErrorsThatOnlyOneResultDrawsAtEachPose) {
+  StoredResult a = result_of("", 0.0);
+  a.factors = {{"play", "m"}, {"length", "m"}};
+  StoredResult b = a;
+  b.factor_draws = {"per pose", "per machine"};
+  EXPECT_EQ(others_text(other_requirements(a, b, kYieldMerit), 'C'),
+            "the draws differ (draws of play: per machine in A, per pose in C)");
+}
+
+TEST(RequiredBy, KnowsTheKeysOfASweep) {
+  EXPECT_EQ(required_by("analysis.limits.gap", kYieldMerit), "limits");
+  EXPECT_EQ(required_by("analysis.limits.gap", "root mean square of gap"), "");
+  EXPECT_EQ(required_by("analysis.yield", kCostMerit), "wanted yields");
+  EXPECT_EQ(required_by("analysis.yield", kYieldMerit), "");
+  EXPECT_EQ(required_by("analysis.draws", kYieldMerit), "draws");
+  EXPECT_EQ(required_by("poses.workspace.z", kYieldMerit), "poses");
+  EXPECT_EQ(required_by("poses.count", kYieldMerit), "");
+  EXPECT_EQ(required_by("mechanism.geometry.R", kYieldMerit), "");
 }
 
 TEST(ComparedResponse, IsOneThatAllHave) {

@@ -1,0 +1,120 @@
+#include "engine/report/requirements.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "engine/report/display.h"
+#include "engine/study/study.h"
+
+namespace poesy {
+namespace {
+
+constexpr std::string_view kPoses = "poses";
+constexpr std::string_view kDrawn = "draws";
+
+/// Whether `setting` is the setting or section `name`, or belongs to it.
+bool is_of(std::string_view setting, std::string_view name) {
+  return setting.starts_with(name) && (setting.size() == name.size() || setting[name.size()] == '.');
+}
+
+/// The value of a trajectory without its number of poses: "file = path.csv, time = [0 s, 2 s]".
+std::string without_points(std::string value) {
+  const std::size_t begin = value.find("points = ");
+  if (begin == std::string::npos) return value;
+  const std::size_t end = value.find(", ", begin);
+  return value.erase(begin, end == std::string::npos ? end : end + 2 - begin);
+}
+
+/// The value of a setting as far as it is a requirement.
+std::string required_value(const std::string& name, const std::string& value) {
+  return name == "poses.trajectory" ? without_points(value) : value;
+}
+
+/// The settings of a result on which the figure of merit depends, with their values.
+std::map<std::string, std::string> required_settings(const StoredResult& result, std::string_view merit) {
+  std::map<std::string, std::string> list;
+  for (const auto& [name, value] : readable_settings(result.study_text)) {
+    if (!required_by(name, merit).empty()) list.emplace(name, required_value(name, value));
+  }
+  return list;
+}
+
+/// Whether result `of` draws its error p anew at each pose.
+bool is_per_pose(const StoredResult& of, std::size_t p) {
+  return !of.factor_draws.empty() && of.factor_draws[p] == name(Draws::per_pose);
+}
+
+/// Adds the errors that both results have, but that only one of them draws anew at each pose.
+void add_draws_of_errors(const StoredResult& a, const StoredResult& b, std::vector<OtherRequirement>& others) {
+  std::vector<std::string> only_in_a;
+  std::vector<std::string> only_in_b;
+  for (const auto& [p, q] : common(names_of(a.factors), names_of(b.factors))) {
+    if (is_per_pose(a, p) == is_per_pose(b, q)) continue;
+    (is_per_pose(a, p) ? only_in_a : only_in_b).push_back(a.factors[p].name);
+  }
+  const auto add = [&](const std::vector<std::string>& errors, Draws in_a, Draws in_b) {
+    if (errors.empty()) return;
+    others.push_back({kDrawn, "draws of " + some_names(errors, 3), std::string(name(in_a)), std::string(name(in_b))});
+  };
+  add(only_in_a, Draws::per_pose, Draws::per_machine);
+  add(only_in_b, Draws::per_machine, Draws::per_pose);
+}
+
+/// "analysis.limits.gap: 0.15 mm in A, 0.2 mm in B", or the name alone if a value is long.
+std::string other_text(const OtherRequirement& other, char letter) {
+  constexpr std::size_t kLong = 40;
+  if (std::max(other.in_a.size(), other.in_b.size()) > kLong) return other.name;
+  const auto text = [](const std::string& value) { return value.empty() ? "none" : value; };
+  return fmt::format("{}: {} in A, {} in {}", other.name, text(other.in_a), text(other.in_b), letter);
+}
+
+}  // namespace
+
+std::string_view required_by(std::string_view setting, std::string_view merit) {
+  if (merit == kYieldMerit || merit == kCostMerit) {
+    if (is_of(setting, "analysis.limits")) return "limits";
+    if (setting == "analysis.draws") return kDrawn;
+  }
+  if (merit == kCostMerit && (setting == "analysis.yield" || setting == "analysis.confidence")) return "wanted yields";
+  const bool is_number = is_of(setting, "poses.count") || setting == "poses.trajectory.points";
+  return is_of(setting, kPoses) && !is_number ? kPoses : std::string_view();
+}
+
+std::vector<OtherRequirement> other_requirements(const StoredResult& a, const StoredResult& b, std::string_view merit) {
+  const std::map<std::string, std::string> of_a = required_settings(a, merit);
+  const std::map<std::string, std::string> of_b = required_settings(b, merit);
+  std::map<std::string, std::pair<std::string, std::string>> both;
+  for (const auto& [name, value] : of_a) both[name].first = value;
+  for (const auto& [name, value] : of_b) both[name].second = value;
+  const bool same_poses = a.poses == b.poses;
+  std::vector<OtherRequirement> others;
+  for (const auto& [name, values] : both) {
+    const std::string_view topic = required_by(name, merit);
+    // A file of poses may have been changed, so its name says nothing.
+    const bool differs = topic == kPoses ? !same_poses && (name == "poses.file" || values.first != values.second)
+                                         : values.first != values.second;
+    if (differs) others.push_back({topic, name, values.first, values.second});
+  }
+  if (merit == kYieldMerit) add_draws_of_errors(a, b, others);
+  return others;
+}
+
+std::string topics_text(const std::vector<OtherRequirement>& others) {
+  std::vector<std::string_view> topics;
+  for (const OtherRequirement& other : others) {
+    if (std::ranges::find(topics, other.topic) == topics.end()) topics.push_back(other.topic);
+  }
+  return fmt::format("{}", fmt::join(topics, " and "));
+}
+
+std::string others_text(const std::vector<OtherRequirement>& others, char letter) {
+  std::vector<std::string> list;
+  for (const OtherRequirement& other : others) list.push_back(other_text(other, letter));
+  return fmt::format("the {} differ ({})", topics_text(others), fmt::join(list, "; "));
+}
+
+}  // namespace poesy

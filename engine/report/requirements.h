@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/report/merits.h"
+#include "engine/result/result_file.h"
+
+/// Finds out whether figures of merit of two results answer the same question. A yield under wider limits is larger
+/// although the machines are the same, so it does not say that a design is better.
+namespace poesy {
+
+/// What a setting requires: "limits", "wanted yields", "draws" or "poses". Empty if designs may differ in the setting
+/// and be compared by this figure of merit, as in a number of poses. setting: full name of the setting,
+/// "analysis.limits.gap". merit: name of the figure of merit.
+std::string_view required_by(std::string_view setting, std::string_view merit);
+
+/// The requirements of two results that differ and on which this figure of merit depends. Settings of poses count only
+/// if the poses differ.
+std::vector<OtherRequirement> other_requirements(const StoredResult& a, const StoredResult& b, std::string_view merit);
+
+/// What differs, each once: "limits and poses".
+std::string topics_text(const std::vector<OtherRequirement>& others);
+
+/// What differs, with the values in A and in the result of this letter: "the limits differ (analysis.limits.gap: 0.15
+/// mm in A, 0.2 mm in B)". Long values are left out.
+std::string others_text(const std::vector<OtherRequirement>& others, char letter);
+
+}  // namespace poesy
