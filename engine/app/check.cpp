@@ -107,9 +107,7 @@ int check(const std::string& path) {
   print(resolved_text(study));
   const Outlook expected = outlook(study, *model, poses.poses);
   print(fmt::format("\n# valid: {}\n{}", expected.solves, cost_text(expected)));
-  for (const std::string& note : {calibration_text(study), held_errors_text(study)}) {
-    if (!note.empty()) print("# " + note + "\n");
-  }
+  for (const std::string& note : study_notes(study)) print("# " + note + "\n");
   for (const std::string& line : model->mobility()) print("# mobility: " + line + "\n");
   for (const std::string& remark : model->remarks()) print("# " + remark + "\n");
   for (const std::string& doubt : mechanism_doubts(study.mechanism, *model)) print("# hint: " + doubt + "\n");

@@ -346,6 +346,13 @@ std::vector<std::string> all_doubts(const Study& study, const Model& model, cons
   return list;
 }
 
+std::vector<std::string> study_notes(const Study& study) {
+  std::vector<std::string> notes{calibration_text(study), held_errors_text(study)};
+  if (study.analysis.kind->note != nullptr) notes.push_back(study.analysis.kind->note(study));
+  std::erase(notes, "");
+  return notes;
+}
+
 StoredResult read_result_with_warning(const std::string& path) {
   StoredResult result = read_result(path);
   if (result.changed) say(Message::warning, path + " was changed since it was written; see poesy verify");

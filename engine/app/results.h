@@ -100,6 +100,9 @@ void warn_of_mechanism(const Study& study, const Model& model);
 /// What looks like a mistake in the mechanism, and in the numbers of the study's tables (doubts_of()), one line each.
 std::vector<std::string> all_doubts(const Study& study, const Model& model, const SelectedPoses& poses);
 
+/// What the study holds constant, leaves as it is, or calibrates, one line each.
+std::vector<std::string> study_notes(const Study& study);
+
 /// Reads a result file. Warns on stderr if the file was changed after it was written. Throws FileError.
 StoredResult read_result_with_warning(const std::string& path);
 

@@ -196,8 +196,8 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
     return leave_before_the_start(*team, resumable);
   for (const std::string& doubt : all_doubts(study, *model, *poses)) say(Message::warning, doubt);
   say_rejected(*poses, options.quiet);
-  for (const std::string& note : {calibration_text(study), held_errors_text(study)}) {
-    if (!note.empty() && !options.quiet) say(Message::note, note);
+  for (const std::string& note : study_notes(study)) {
+    if (!options.quiet) say(Message::note, note);
   }
   Job job{.study = study,
           .model = *model,

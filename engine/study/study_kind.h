@@ -95,6 +95,8 @@ struct StudyKind {
   void (*complete)(Study& study, const Reading& reading) = nullptr;
   /// Throws InputError if an error in the kind's own keys is too large for this model (Model::error_bound).
   void (*check_errors)(const StudySection& analysis, const Study& study, const Model& model) = nullptr;
+  /// A clause on what the study leaves as it is, which users see before a run; null or empty: nothing.
+  std::string (*note)(const Study& study) = nullptr;
   AtPose (*at_pose)(const Study& study);  ///< numbers of values and solves of a study at each pose
   /// Turns a study of this kind into one that judges whether machines reach this yield; null: the kind judges no
   /// machines.

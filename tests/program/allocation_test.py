@@ -97,6 +97,19 @@ class Allocation(ResumptionTest):
         for part, (share, bound) in enumerate(zip(coarser, bounds)):
             self.assertTrue(share < most or bound == 2, f"part {part}: {machines * (1 - share)} rejects, bound {bound}")
 
+    def test_errors_in_no_part_are_named(self):
+        lengths = PARTS.split("[[analysis.parts]]")[1]
+        some = TIP.replace(PARTS, "[[analysis.parts]]" + lengths).replace("0.05 deg", "0.002 deg")
+        self.write("study.toml", some)
+        said = " varied errors are in no part; their sizes stay as [errors] states them: "
+        self.assertIn(said, self.succeeds("check", "study.toml"))
+        done = self.poesy("run", "study.toml", "-o", "out.h5")
+        self.assertIn(said, done.stderr.decode())
+        tables = json.loads(self.succeeds("show", "out.h5", "--json"))["tables"]
+        rows = next(table["rows"] for table in tables if table["name"] == "in_no_part")
+        self.assertEqual({(row["distribution"], row["sigma"], row["unit"]) for row in rows}, {("normal", 0.002, "deg")})
+        self.assertIn(f"{len(rows)} of ", self.succeeds("show", "out.h5", "--method"))
+
     def test_no_part_could_be_coarser(self):
         for study, parts in ((GAP, 47), (TIP, 60)):
             self.run_study(study)

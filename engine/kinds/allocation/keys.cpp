@@ -10,6 +10,7 @@
 
 #include "engine/base/text.h"
 #include "engine/kinds/allocation/alike_limbs.h"
+#include "engine/kinds/allocation/in_no_part.h"
 #include "engine/kinds/allocation/parts.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/allocation/zone_blocks.h"
@@ -326,6 +327,10 @@ std::optional<Refusal> no_template(const ModelDescription& model) {
                  "choose another kind"};
 }
 
+std::string note_on_parts(const Study& study) {
+  return in_no_part_text(errors_in_no_part(study), study.analysis.factors.size());
+}
+
 AtPose allocation_at_pose(const Study& study) {
   const auto parts = static_cast<double>(asked_of<AllocationOptions>(study.analysis).parts.size());
   return {parts, "parts", static_cast<double>(study.analysis.samples), "samples"};
@@ -347,6 +352,7 @@ const StudyKind kAllocationStudy{.name = "allocation",
                                  .no_template = no_template,
                                  .complete = complete_allocation,
                                  .check_errors = check_sizes,
+                                 .note = note_on_parts,
                                  .at_pose = allocation_at_pose};
 
 }  // namespace poesy

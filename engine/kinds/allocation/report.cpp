@@ -8,6 +8,7 @@
 
 #include "engine/base/nan.h"
 #include "engine/base/units.h"
+#include "engine/kinds/allocation/in_no_part.h"
 #include "engine/kinds/allocation/kind.h"
 #include "engine/kinds/allocation/prediction.h"
 #include "engine/kinds/allocation/result.h"
@@ -71,6 +72,7 @@ void add_drawing(const StoredResult& result, std::span<const Table> tables, Page
   const Result& found = allocation_of(result);
   Section& section = page.add_section("drawing", "What goes on the drawing");
   section.table(tables, "drawing");
+  section.table(tables, "in_no_part");
   if (found.has_zones()) section.paragraph("Tolerance frames are in mm.");
   for (std::size_t n = 0; n < found.parts(); ++n) {
     page.figures.about.emplace(found.part_names[n], found.part_members(n));
@@ -192,6 +194,12 @@ std::string tightest_text(const StoredResult& result) {
                      number_text(found.saving(*most), 3), number_text(found.total_cost));
 }
 
+/// Sentences on the errors in no part, on which the certificate depends as well; empty if there are none.
+std::string keep_text(const StoredResult& result) {
+  const std::string text = in_no_part_text(errors_in_no_part(result), result.factors.size());
+  return text.empty() ? text : text + ". The certificate holds only with these sizes. ";
+}
+
 Answer answer(const StoredResult& result) {
   const Result& found = allocation_of(result);
   if (found.poses() == 0 || found.parts() == 0) return {};
@@ -209,11 +217,12 @@ Answer answer(const StoredResult& result) {
   lines.emplace_back(
       "How sure", fmt::format("{} of fresh machines are good, {} interval {} to {}.", percent_text(shown.value),
                               percent_text(shown.conf_level), percent_text(shown.ci_low), percent_text(shown.ci_high)));
-  lines.emplace_back("What to do", found.certified()
-                                       ? "Put the tolerances of the table below on the drawing. The study of the "
-                                         "certificate repeats the proof."
-                                       : "Do not use these tolerances as they are: study again with another seed or a "
-                                         "lower yield.");
+  lines.emplace_back(
+      "What to do", found.certified() ? fmt::format("Put the tolerances of the table below on the drawing. {}The study "
+                                                    "of the certificate repeats the proof.",
+                                                    keep_text(result))
+                                      : "Do not use these tolerances as they are: study again with another seed or a "
+                                        "lower yield.");
   return lines;
 }
 
@@ -251,10 +260,12 @@ StudyWords words(const StoredResult& result) {
 }
 
 MethodWords method(const StoredResult& result) {
+  const std::string others = in_no_part_text(errors_in_no_part(result), result.factors.size());
   return {fmt::format(
       "{} under the wanted yield were found by linearised mean squares and by the yield of drawn machines, and were "
-      "certified with fresh machines, which the search had not seen.",
-      has_costs(allocation_of(result)) ? "Tolerances of least cost" : "The largest tolerances")};
+      "certified with fresh machines, which the search had not seen.{}",
+      has_costs(allocation_of(result)) ? "Tolerances of least cost" : "The largest tolerances",
+      others.empty() ? "" : " " + others + ".")};
 }
 
 /// The share of each error in the mean square, and at each pose the use of the limit that is used most.

@@ -240,7 +240,8 @@ struct AllocationResult {
 /// The result of a study of kind `allocation`, read from a file. Precondition: the result is of this kind.
 inline const AllocationResult& allocation_of(const StoredResult& result) { return found_of<AllocationResult>(result); }
 
-/// The tables of the result: certificate, parts of the drawing, cost of each limit, and stages of the search.
+/// The tables of the result: certificate, parts of the drawing, errors in no part, cost of each limit, and stages of
+/// the search.
 std::vector<Table> allocation_tables(const StoredResult& result, const TableOptions& options = {});
 
 }  // namespace poesy

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/base/units.h"
+#include "engine/kinds/allocation/in_no_part.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/allocation/summary.h"
 #include "engine/kinds/allocation/zone_tables.h"
@@ -385,8 +386,10 @@ void append_curves(const Result& found, std::vector<Table>& tables) {
 
 std::vector<Table> allocation_tables(const StoredResult& result, const TableOptions& options) {
   const Result& found = allocation_of(result);
-  std::vector<Table> tables{certificate_table(result), drawing_table(found, options.order), use_table(result),
-                            stages_table(found)};
+  std::vector<Table> tables{certificate_table(result), drawing_table(found, options.order)};
+  if (const auto errors = errors_in_no_part(result); !errors.empty()) tables.push_back(in_no_part_table(errors));
+  tables.push_back(use_table(result));
+  tables.push_back(stages_table(found));
   append_curves(found, tables);
   return tables;
 }

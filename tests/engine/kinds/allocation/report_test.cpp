@@ -108,6 +108,22 @@ TEST_F(AllocationReport, HasTheYieldAsAMonteCarloStudy) {
   EXPECT_EQ(column(yield, "rejects"), Texts{"360"});
 }
 
+TEST_F(AllocationReport, NamesTheErrorsThatAreInNoPart) {
+  found().part_members(1) = "delta_2";
+  EXPECT_EQ(text_of(table("in_no_part"), 100),
+            "In no part: 1 error, taken as [errors] states it\n"
+            "error      distribution  sigma  unit\n"
+            "epsilon_1  uniform       16.54  deg\n"
+            "The tolerances were found and certified with these sizes, so the certificate holds only if these\n"
+            "errors keep them; a part of [[analysis.parts]] that names them finds their tolerances\n");
+  const std::string text =
+      "1 of 2 varied errors is in no part; its size stays as [errors] states it: epsilon_1 (uniform, sigma 16.54 deg)";
+  const std::string page = html();
+  EXPECT_NE(page.find(text + ". The certificate holds only with these sizes."), std::string::npos);
+  EXPECT_NE(page.find("data-table=\"in_no_part\""), std::string::npos);
+  EXPECT_NE(kAllocationReport.method(result).text.find(text), std::string::npos);
+}
+
 TEST_F(AllocationReport, PutsTheDrawingInATable) {
   EXPECT_EQ(text_of(table("drawing"), 100),
             "The drawing: tolerances of 3 parts at least cost, 10 in all\n"
