@@ -18,6 +18,7 @@
 #include "engine/base/text.h"
 #include "engine/kinds/registry.h"
 #include "engine/kinds/result_file.h"
+#include "engine/report/display.h"
 #include "engine/report/latex.h"
 #include "engine/report/report_kind.h"
 #include "engine/report/tables.h"
@@ -35,12 +36,22 @@ struct ExportOptions {
   std::optional<std::size_t> top;
 };
 
+/// Adds to tables of a result that was solved to first order a note on this, as far as they do not say it.
+void add_first_order_notes(const StoredResult& result, std::vector<Table>& tables) {
+  if (!is_first_order(result)) return;
+  const auto says_it = [](const std::string& note) { return note.find(kFirstOrder) != std::string::npos; };
+  for (Table& table : tables) {
+    if (std::ranges::none_of(table.notes, says_it)) table.notes.push_back(fmt::format("fidelity: {}", kFirstOrder));
+  }
+}
+
 /// The tables that `poesy show` prints, with all columns, and the tables of the names of coordinates, errors and
 /// responses with their meanings.
 std::vector<Table> printed_tables(const ExportOptions& options, StoredResult& result) {
   const std::string response = choose_response(options.response, options.result, result);
   std::vector<Table> tables = result_tables(kind_of(result).report, result, {response});
   if (options.top) keep_first(*options.top, tables);
+  add_first_order_notes(result, tables);
   for (Table& table : name_tables(result)) {
     if (!table.rows.empty()) tables.push_back(std::move(table));
   }

@@ -210,4 +210,8 @@ std::string readable_setting(std::string_view study_text, std::string_view secti
   return readable_setting(study_setting(study_text, section, key));
 }
 
+bool is_first_order(const StoredResult& result) {
+  return readable_setting(result.study_text, "mechanism", "fidelity") == "first-order";
+}
+
 }  // namespace poesy

@@ -197,6 +197,7 @@ std::string summary_text(const StoredResult& result, const SolveTally& tally, st
     text += prose_of(rejected, width);
   }
   if (!result.metric.empty()) text += prose_of("metric: " + metric_text(result), width);
+  if (is_first_order(result)) text += prose_of(std::string(kFirstOrder), width);
   text += prose_of(fmt::format("{}{} in {:.2f} s on {}: {}/s", counted_samples(facts.samples(), facts.by_series), each,
                                facts.wall_seconds, counted(facts.threads, "thread", "threads"),
                                counted_samples(static_cast<std::uint64_t>(std::llround(per_second)), facts.by_series)),

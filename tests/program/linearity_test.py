@@ -55,6 +55,22 @@ class Linearity(ProgramTest):
         self.assertIn("Some indices say something about the size of the errors in this study and no other",
                       (self.folder / "study.html").read_text())
 
+    def test_solves_to_first_order_do_not_test_it(self):
+        first = STUDY.replace("published", "platform").replace('model = "2upr-rpu"', 'model = "2upr-rpu"\nfidelity = "first-order"')
+        result = self.result("first", first)
+        shown = " ".join(self.succeeds("show", result).split())
+        said = "solved to first order in the errors, so it is not tested whether indices hold at other sizes"
+        self.assertIn(said, shown)
+        self.assertRegex(shown, r"solved to first order in the errors \d[\d ]* solves in ")
+        for words in ("at a tenth", "holds at"):
+            self.assertNotIn(words, shown)
+        self.succeeds("report", result)
+        page = (self.folder / "first.html").read_text()
+        self.assertIn(f"The samples were {said}.", page)
+        self.assertNotIn("hold at a tenth", page)
+        self.succeeds("export", result, "-d", "tables", "--latex")
+        self.assertIn(said, " ".join((self.folder / "tables/ranked.tex").read_text().split()))
+
     def test_change_is_that_between_two_studies(self):
         found = self.read(self.result(), "linear_deformation")
         large = self.read("study.h5", "linear_deformation", "global")

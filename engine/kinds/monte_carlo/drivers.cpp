@@ -18,6 +18,9 @@ namespace {
 
 constexpr double kStep = kErrorGrowth - 1.0;
 
+/// Below this share of the scatter that is linear in the errors, the shares of errors say little.
+constexpr double kMostlyLinear = 0.9;
+
 const YieldResult* yield_in(const StoredResult& result) {
   const auto& machines = monte_carlo_of(result).machines;
   return machines && machines->yield ? &*machines->yield : nullptr;
@@ -99,9 +102,13 @@ ToldErrors told_errors(const StoredResult& result, const YieldResult& yield, con
 }
 
 std::string linear_note(const StoredResult& result, const YieldResult& yield, std::size_t r) {
+  if (is_first_order(result) && !(yield.linear_share(r) < kMostlyLinear)) {
+    return fmt::format("{}: {}, so it is not tested whether its scatter is linear in them", result.responses[r].name,
+                       kFirstOrder);
+  }
   return fmt::format(
       "{}: {} of its scatter is linear in the errors{}", result.responses[r].name, percent_text(yield.linear_share(r)),
-      yield.linear_share(r) < 0.9 ? "; the rest belongs to no error alone, so these shares say little" : "");
+      yield.linear_share(r) < kMostlyLinear ? "; the rest belongs to no error alone, so these shares say little" : "");
 }
 
 /// A note on the mean of a response over the machines, which smaller errors do not change. Empty if the mean is hardly

@@ -86,9 +86,11 @@ std::string sure_text(const StoredResult& result, const RankedErrors& ranked) {
   }
   std::string text = fmt::format("Intervals reach at most {:.2g} % away from their index.", 100.0 * widest);
   const std::size_t changing = changing_errors(result, ranked.response).size();
-  return text + (changing == 0
-                     ? " The indices hold at a tenth of the sizes as well."
-                     : fmt::format(" {} at other sizes.", counted(changing, "index is another", "indices are others")));
+  if (changing > 0) {
+    return text + fmt::format(" {} at other sizes.", counted(changing, "index is another", "indices are others"));
+  }
+  return text + (is_first_order(result) ? fmt::format(" The samples were {}.", kSizesNotTested)
+                                        : " The indices hold at a tenth of the sizes as well.");
 }
 
 /// The errors with a large effect, by what can be done about it.

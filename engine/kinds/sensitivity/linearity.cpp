@@ -209,6 +209,15 @@ std::vector<std::size_t> changing_errors(const StoredResult& result, std::size_t
 std::string index_change_text(const StoredResult& result, std::size_t response, std::span<const std::size_t> unnamed) {
   const std::span<const double> changes = changes_of(result, response);
   const std::vector<std::size_t> changing = changing_errors(result, response);
+  std::vector<std::string> list;
+  for (const std::size_t p : changing) {
+    if (std::ranges::find(unnamed, p) != unnamed.end()) continue;
+    list.push_back(fmt::format("{} ({})", result.factors[p].name, change_text(changes[p])));
+  }
+  const std::string names = some_names(list, kMostNames);
+  if (is_first_order(result)) {
+    return std::string(kSizesNotTested) + (list.empty() ? "" : "; not at a tenth for " + names);
+  }
   std::size_t effects = 0;
   std::size_t unknown = 0;
   for (std::size_t p = 0; p < changes.size(); ++p) {
@@ -221,12 +230,7 @@ std::string index_change_text(const StoredResult& result, std::size_t response, 
                   result.responses[response].name, 100.0 * kIndexHolds, effects - unknown - changing.size(),
                   counted(effects, "error with an effect", "errors with an effect"));
   if (unknown > 0) text += fmt::format("; not known for {}", unknown);
-  std::vector<std::string> list;
-  for (const std::size_t p : changing) {
-    if (std::ranges::find(unnamed, p) != unnamed.end()) continue;
-    list.push_back(fmt::format("{} ({})", result.factors[p].name, change_text(changes[p])));
-  }
-  return list.empty() ? text : text + "; not for " + some_names(list, kMostNames);
+  return list.empty() ? text : text + "; not for " + names;
 }
 
 std::vector<std::size_t> negligible_errors(const StoredResult& result, std::size_t response,

@@ -49,10 +49,15 @@ Cell change_cell(double change);
 /// The errors that have an effect on the response and whose index changes with size, the largest change first.
 std::vector<std::size_t> changing_errors(const StoredResult& result, std::size_t response);
 
+/// What is said instead of a text on other sizes if the samples were solved to first order.
+inline constexpr std::string_view kSizesNotTested =
+    "solved to first order in the errors, so it is not tested whether indices hold at other sizes";
+
 /// A text on the errors with an effect. It states for how many of them the index on the response holds at a tenth of
 /// the size, and names those for which it does not hold, the largest change first: "the index on gap holds at a tenth
 /// of the size, within 2 %: 15 of 25 errors with an effect; not for epsilon_3_4_z (-99.1 %), ...". unnamed: errors that
-/// are counted but not named.
+/// are counted but not named. If the samples were solved to first order, no index is said to hold: kSizesNotTested, and
+/// the names.
 std::string index_change_text(const StoredResult& result, std::size_t response,
                               std::span<const std::size_t> unnamed = {});
 

@@ -171,9 +171,11 @@ Columns ranked_columns(const StoredResult& result, const RankedErrors& ranked) {
     const std::string& name = result.responses[r].name;
     add_index(list, result, r, "index_" + name, name, dispensable++);
   }
-  list.push_back({percent_column("index_change", "at a tenth", kIndexChange), [&result, response](std::size_t p) {
-                    return change_cell(sensitivity_of(result).index_change(response, p));
-                  }});
+  if (!is_first_order(result)) {
+    list.push_back({percent_column("index_change", "at a tenth", kIndexChange), [&result, response](std::size_t p) {
+                      return change_cell(sensitivity_of(result).index_change(response, p));
+                    }});
+  }
   list.push_back({percent_column("not_converged", "not converged", kNotConverged),
                   [&](std::size_t p) { return percent_cell(share_not_converged(sensitivity_of(result), p)); }});
   list.push_back(
@@ -182,7 +184,7 @@ Columns ranked_columns(const StoredResult& result, const RankedErrors& ranked) {
 }
 
 std::vector<std::string> ranked_notes(const StoredResult& result, const RankedErrors& ranked) {
-  return {
+  std::vector<std::string> notes{
       fmt::format(
           "index: scatter of {} per scatter of the error (standard deviations), mean over the poses plus spread "
           "between them; low, high: its {:.3g} % interval",
@@ -190,11 +192,15 @@ std::vector<std::string> ranked_notes(const StoredResult& result, const RankedEr
       "published: the index as the literature estimates it, which counts the noise of sampling as spread between "
       "poses; index is without that noise",
       "effect: index \u00d7 sigma, the scatter that an error of the study's sigma causes; the rank goes by it, because "
-      "indices per mm and per deg do not compare",
-      "at a tenth: what the index changes by if the error is a tenth as large, from the same draws; where it "
-      "changes, the index says something about the size studied and no other",
-      index_change_text(result, ranked.response),
-      "not converged: share of the samples whose solve did not settle"};
+      "indices per mm and per deg do not compare"};
+  if (!is_first_order(result)) {
+    notes.emplace_back(
+        "at a tenth: what the index changes by if the error is a tenth as large, from the same draws; where it "
+        "changes, the index says something about the size studied and no other");
+  }
+  notes.push_back(index_change_text(result, ranked.response));
+  notes.emplace_back("not converged: share of the samples whose solve did not settle");
+  return notes;
 }
 
 /// A note on how the ranking changes with the points of the platform's metric; empty if the result does not contain

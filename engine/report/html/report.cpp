@@ -84,7 +84,7 @@ void warn_of_fidelity(const StoredResult& result, const SolveTally& tally, Warni
                     "stand for \"{}\" there.",
                     tally.second->not_linear, tally.second->errors, tally.second->second, tally.second->first));
   }
-  if (!tally.second && readable_setting(result.study_text, "mechanism", "fidelity") == "first-order") {
+  if (is_first_order(result)) {
     list.push_back(
         "The model was solved to first order in the errors. What grows with their square is not in these numbers; a "
         "sensitivity study that compares two fidelities shows how much that is.");

@@ -253,6 +253,17 @@ TEST(MonteCarloTable, ShowsFirstWhatMakesTheLimitedResponse) {
       "little");
 }
 
+TEST(MonteCarloTable, DoesNotTestItsLinearityToFirstOrder) {
+  StoredResult result = example_of_machines();
+  result.study_text = "[mechanism]\nfidelity = \"first-order\"\n";
+  const std::vector<std::string> notes = monte_carlo_tables(result)[0].notes;
+  EXPECT_EQ(
+      notes[1],
+      "linear_deformation: solved to first order in the errors, so it is not tested whether its scatter is linear "
+      "in them");
+  EXPECT_NE(notes[2].find("ratio: 50 % of its scatter is linear"), std::string::npos);
+}
+
 TEST(MonteCarloTable, StatesTheMeanThatIsInNoShare) {
   StoredResult result = example_of_machines();
   YieldResult& yield = *monte_carlo_in(result).machines->yield;

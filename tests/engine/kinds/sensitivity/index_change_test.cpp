@@ -42,6 +42,20 @@ TEST(IndexChange, NamesErrorsWhoseIndexChangesTheLargestFirst) {
       << "an error without an index has none that changes";
 }
 
+TEST(IndexChange, IsNotTestedToFirstOrder) {
+  StoredResult stored = result({0.0, 0.0, 0.0});
+  stored.study_text = "[mechanism]\nfidelity = \"first-order\"\n";
+  const std::string text =
+      "solved to first order in the errors, so it is not tested whether indices hold at other sizes";
+  EXPECT_EQ(index_change_text(stored, 0), text);
+  const Table table = result_tables(stored, "x").front();
+  EXPECT_EQ(std::ranges::find(table.columns, "index_change", &Column::name), table.columns.end());
+  EXPECT_NE(std::ranges::find(table.notes, text), table.notes.end());
+  stored = result({-0.5, 0.0, 0.0});
+  stored.study_text = "[mechanism]\nfidelity = \"first-order\"\n";
+  EXPECT_EQ(index_change_text(stored, 0), text + "; not at a tenth for delta_b (-50.0 %)");
+}
+
 TEST(IndexChange, IsAColumnOfTheRankingAndANote) {
   const StoredResult stored = result({-0.5, 1e-14, -0.991});
   const Table table = result_tables(stored, "x").front();
