@@ -186,6 +186,17 @@ std::string needed_machines_note(const Changes& changes, const ToldErrors& found
       counted(kFiner * kFiner * yield.machines, "machine", "machines"));
 }
 
+/// A note on the order of the listed changes, and on their sizes: of many estimates those that exclude zero are larger
+/// than the truth as a rule (Ioannidis 2008, Epidemiology 19, 640-648). with_shares: whether shares are beside them.
+std::string selection_note(bool with_shares) {
+  return fmt::format(
+      "rows are listed because their interval excludes zero, the largest loss first{}; of many uncertain effects those "
+      "that are listed are overestimated as a rule, so {}",
+      with_shares ? ", errors whose share may be zero last" : "",
+      with_shares ? "compare a change with the share of the scatter"
+                  : "run more machines before you rely on a small one");
+}
+
 Table change_table(const StoredResult& result, const YieldResult& yield) {
   const Changes changes = changes_of(result, yield);
   const auto column = [&](std::string name, std::string heading, const Changes::Values& values) {
@@ -208,13 +219,20 @@ Table change_table(const StoredResult& result, const YieldResult& yield) {
         "exclude zero by chance",
         percent_text(yield.conf_level), count_text(found.tested)));
   }
-  fill(table, found.told,
-       {name_column(result.factors, "error"),
-        column("change", "yield", changes.value),
-        column("change_low", "low", changes.low),
-        column("change_high", "high", changes.high),
-        {number_column("slope", "slope", "", 1),
-         [&](std::size_t p) { return number_cell(yield.gradient(p) * display(result.factors[p]).si); }}});
+  std::vector<FilledColumn> columns{name_column(result.factors, "error"),
+                                    column("change", "yield", changes.value),
+                                    column("change_low", "low", changes.low),
+                                    column("change_high", "high", changes.high),
+                                    {number_column("slope", "slope", "", 1), [&](std::size_t p) {
+                                       return number_cell(yield.gradient(p) * display(result.factors[p]).si);
+                                     }}};
+  const std::optional<ResponseShares> shares = response_shares(result);
+  if (shares) {
+    columns.push_back(
+        {percent_column("share", "share of scatter"), [&](std::size_t p) { return percent_cell(shares->each[p]); }});
+  }
+  if (found.tested > 1 && !found.told.empty()) table.notes.push_back(selection_note(shares.has_value()));
+  fill(table, found.told, columns);
   const std::size_t unknown = changes.value.size() - found.known;
   add_line(table, found.known - found.told.size(), "whose effect is not certain", "whose effects are not certain");
   add_line(table, unknown, "of which these machines do not tell it", "of which these machines do not tell it");

@@ -284,12 +284,13 @@ TEST(MonteCarloTable, PutsWhatIsNotCertainIntoOneLine) {
   table.notes.clear();
   EXPECT_EQ(text_of(table, kUnlimitedWidth),
             "What the yield changes by if the sigma of one error grows by 10 %\n"
-            "error                                           yield    low   high   slope\n"
-            "                                                  [%]    [%]    [%]\n"
-            "epsilon_1                                         -20  -25    -15    -3.491\n"
-            "delta_1                                            -1   -1.5   -0.5  -0.01\n"
-            "2 errors whose effects are not certain              -      -      -       -\n"
-            "1 error of which these machines do not tell it      -      -      -       -\n");
+            "                                                                             share of\n"
+            "error                                           yield    low   high   slope   scatter\n"
+            "                                                  [%]    [%]    [%]               [%]\n"
+            "epsilon_1                                         -20  -25    -15    -3.491        70\n"
+            "delta_1                                            -1   -1.5   -0.5  -0.01         10\n"
+            "2 errors whose effects are not certain              -      -      -       -         -\n"
+            "1 error of which these machines do not tell it      -      -      -       -         -\n");
 }
 
 TEST(MonteCarloTable, SaysThatFewRejectsTellLittle) {
@@ -317,6 +318,11 @@ TEST(MonteCarloTable, ShowsNoEffectThatIsChanceAmongMany) {
       table.notes[1],
       "shown are errors whose effect is certain at 95 % for all 4 together (Holm 1979): of so many intervals some "
       "exclude zero by chance");
+  EXPECT_EQ(
+      table.notes[2],
+      "rows are listed because their interval excludes zero, the largest loss first, errors whose share may be zero "
+      "last; of many uncertain effects those that are listed are overestimated as a rule, so compare a change with "
+      "the share of the scatter");
 }
 
 /// However certain its effect seems.
