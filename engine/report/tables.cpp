@@ -388,6 +388,20 @@ std::string few_parts_text(const StoredResult& result, double conf_level, double
                             count_text(trials_without_failure(target, conf_level)));
 }
 
+std::string judged_text(const LimitVerdicts& verdicts) {
+  if (!verdicts.judge) return {};
+  return *verdicts.judge == Judge::rms
+             ? " by root mean square"
+             : fmt::format(" by {} of the draws at the worst pose", percent_text(verdicts.share));
+}
+
+std::string not_within_text(const LimitVerdicts& verdicts, const LimitVerdict& one) {
+  if (!verdicts.judge) return {};
+  if (one.within == one.tried) return "; all samples are within it";
+  return fmt::format("; {} of the samples are not within it",
+                     percent_text(share_of(one.tried - one.within, one.tried)));
+}
+
 std::optional<Table> limits_table(const StoredResult& result) {
   const std::optional<LimitVerdicts>& verdicts = result.verdicts;
   if (!verdicts) return std::nullopt;
@@ -418,8 +432,11 @@ std::optional<Table> limits_table(const StoredResult& result) {
   }
   add_limit_words(result, verdicts->limits, table);
   const std::size_t all = verdicts->limits.size();
-  table.caption = kept == all ? fmt::format("PASS: {} kept", all == 1 ? "the limit is" : "all limits are")
-                              : fmt::format("FAIL: {} of {} not kept", all - kept, counted(all, "limit", "limits"));
+  const std::string judged = judged_text(*verdicts);
+  table.caption = kept == all
+                      ? fmt::format("PASS{}: {} kept", judged, all == 1 ? "the limit is" : "all limits are")
+                      : fmt::format("FAIL{}: {} of {} not kept", judged, all - kept, counted(all, "limit", "limits"));
+  if (all == 1) table.caption += not_within_text(*verdicts, verdicts->limits.front());
   return table;
 }
 

@@ -454,7 +454,15 @@ std::string advice(const StoredResult& result, std::size_t r) {
   const bool has_yield = verdicts && verdicts->yield;
   const bool undecided = has_yield && verdicts->yield->decision == Decision::undecided;
   const bool judged = verdicts && !undecided && !(has_yield && verdicts->yield->decision == Decision::not_asked);
-  if (judged && verdicts->passed()) return "Nothing has to be done: as far as it shows, the limits are kept.";
+  if (judged && verdicts->passed() && has_yield) {
+    return "Nothing has to be done: as far as it shows, the limits are kept.";
+  }
+  if (judged && verdicts->passed()) {
+    return fmt::format(
+        "As far as it shows, the limits are kept{}. If machines have to be within them, ask for a yield (draws = \"per "
+        "machine\").",
+        judged_text(*verdicts));
+  }
   std::string drivers = limit_drivers_text(result);
   if (drivers.empty()) drivers = drivers_text(result, r);
   const std::string which = drivers.empty() ? "A sensitivity study says which errors to make smaller." : drivers;

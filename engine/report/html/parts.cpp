@@ -219,10 +219,11 @@ std::string limits_text(const StoredResult& result) {
   std::string text;
   for (const LimitVerdict& one : result.verdicts->limits) {
     const NamedUnit& response = result.responses[one.response];
-    text += fmt::format("{}{} {} its limit of {} with {}.", text.empty() ? "" : " ", response.name,
+    text += fmt::format("{}{} {} its limit of {}{} with {}{}.", text.empty() ? "" : " ", response.name,
                         one.passed ? "keeps" : "does not keep",
                         limit_text(one.limit, [&](double value) { return response_text(response, value); }),
-                        response_text(response, one.value));
+                        judged_text(*result.verdicts), response_text(response, one.value),
+                        not_within_text(*result.verdicts, one));
   }
   return text;
 }

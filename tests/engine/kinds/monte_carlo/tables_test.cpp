@@ -6,6 +6,7 @@
 
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/report/display.h"
+#include "engine/report/html/parts.h"
 #include "engine/report/table.h"
 #include "engine/report/tables.h"
 #include "tests/engine/kinds/stored.h"
@@ -121,7 +122,7 @@ TEST(LimitsTable, SaysPassOrFailWithBothNumbers) {
       .limits = {{.response = 0, .limit = 3e-5, .value = 0.0155, .passed = false, .tried = 1000, .within = 21},
                  {.response = 1, .limit = 2.0, .value = 0.5, .passed = true, .tried = 1000, .within = 999}}};
   EXPECT_EQ(text_of(limits_table(result).value(), kUnlimitedWidth),
-            "FAIL: 1 of 2 limits not kept\n"
+            "FAIL by root mean square: 1 of 2 limits not kept\n"
             "limit                            judged\n"
             "kept   response            unit  by      value  limit  within  where\n"
             "                                                          [%]\n"
@@ -129,6 +130,23 @@ TEST(LimitsTable, SaysPassOrFailWithBothNumbers) {
             "PASS   ratio               1     rms       0.5   2       99.9  -\n"
             "rms: the root mean square over the draws of all poses; draws that were not solved are left out;\n"
             "within: the share of all draws that are within the limit\n");
+}
+
+/// Because a root mean square within a limit says nothing of single samples.
+TEST(LimitsTable, SaysFirstWhatIsJudgedAndHowManySamplesAreBeyond) {
+  StoredResult result = example();
+  LimitVerdict one{.response = 0, .limit = 3e-5, .value = 2e-5, .passed = true, .tried = 1000, .within = 906};
+  result.verdicts = LimitVerdicts{.judge = Judge::rms, .limits = {one}};
+  EXPECT_EQ(limits_table(result)->caption,
+            "PASS by root mean square: the limit is kept; 9.4 % of the samples are not within it");
+  EXPECT_EQ(
+      limits_text(result),
+      "linear_deformation keeps its limit of 0.03 mm by root mean square with 0.02 mm; 9.4 % of the samples are not "
+      "within it.");
+  one.within = one.tried;
+  result.verdicts = LimitVerdicts{.judge = Judge::share, .share = 0.95, .limits = {one}};
+  EXPECT_EQ(limits_table(result)->caption,
+            "PASS by 95 % of the draws at the worst pose: the limit is kept; all samples are within it");
 }
 
 /// Estimates have four digits, and six where four read as the limit; the cell has the number.
