@@ -4,11 +4,22 @@
 #include "bench/instruction_sets.h"
 #include "bench/published_study.h"
 #include "engine/run/evaluate_unit.h"
+#include "models/assembly/kernel.h"
+#include "models/assembly/kernels.h"
 #include "models/chain/block_kernel.h"
 #include "models/chain/block_kernels.h"
 
-// The kernels "plain" of this program count. The linker finds it here and leaves the library's own alone, so that
-// everything around the kernel is what the other programs run, too.
+// The kernels "plain" of this program count. The linker finds them here and does not take those of the library, so all
+// code around the kernels is that of the other programs.
+namespace poesy::assembly {
+
+template <>
+Kernels kernels<simd::Isa::plain>() {
+  return {solve_assemblies<bench::CountingNumber>, map_assemblies<bench::CountingNumber>};
+}
+
+}  // namespace poesy::assembly
+
 namespace poesy::chain {
 
 template <>
@@ -23,20 +34,22 @@ namespace {
 
 using namespace poesy;
 
-void print(const char* name, const SolveCounts& counts) {
+/// varied: number of errors that vary in a solve. responses: number of responses of a solve.
+void print(const char* name, const SolveCounts& counts, std::size_t varied, std::size_t responses) {
   const auto solves = static_cast<double>(counts.total());
   const auto iterations = static_cast<double>(counts.iterations);
   const bench::OperationCounts& did = bench::operation_counts;
   const auto total = static_cast<double>(did.total());
   const auto share = [total](std::uint64_t operations) { return static_cast<double>(operations) / total; };
   fmt::print(R"({{"case": "{}", "operations_per_solve": {:.0f}, "operations_per_iteration": {:.0f}, )"
-             R"("iterations_per_solve": {:.3f}, "share_in_multiply_adds": {:.3f}, "share_of_divisions": {:.4f}}})"
+             R"("iterations_per_solve": {:.3f}, "share_in_multiply_adds": {:.3f}, "share_of_divisions": {:.4f}, )"
+             R"("bytes_per_solve": {}}})"
              "\n",
              name, total / solves, total / iterations, iterations / solves, 2.0 * share(did.multiply_adds),
-             share(did.divisions + did.roots));
+             share(did.divisions + did.roots), sizeof(double) * (varied + responses));
 }
 
-/// Everything that a solve of the published study costs, its share of the prediction of starts included.
+/// Counts all operations of the solves of a study of one error at a time, with the prediction of starts.
 void count_units(const char* name, Study study, SolverOptions::Method method, std::size_t units) {
   study.solver.method = method;
   const auto model = build_model(study.mechanism);
@@ -45,7 +58,7 @@ void count_units(const char* name, Study study, SolverOptions::Method method, st
   SolveCounts counts;
   bench::operation_counts = {};
   for (std::size_t n = 0; n < units; ++n) counts.merge(evaluate(bench::scattered_unit(plan, n)).solves);
-  print(name, counts);
+  print(name, counts, 1, study.model().responses.size());
 }
 
 constexpr std::size_t kCount = 100;
@@ -67,19 +80,27 @@ void count_all_errors(const char* name, const Study& study, double scale) {
     evaluator->evaluate({poses[PoseIndex(m)], zeros, varied, values, kCount}, {responses, status, iterations, {}});
     for (std::size_t b = 0; b < kCount; ++b) counts.add(status[b], iterations[b]);
   }
-  print(name, counts);
+  print(name, counts, varied.size(), study.model().responses.size());
 }
 
 }  // namespace
 
-/// Counts the floating-point operations of solves by the published rule, one sample at a time; one JSON object a line.
-/// The kernel of assemblies, which solves by the platform's metric, does not compute with numbers that count.
+/// Counts the floating-point operations of solves, one sample at a time, and the bytes that a solve must read and write
+/// (values of the varied errors and responses). Prints a JSON object in each line.
 int main() {
   bench::choose_instruction_set("plain");
   using Method = SolverOptions::Method;
   const Study published = bench::published_study(bench::kPublishedPoses, bench::kPublishedSamples);
+  const Study platform = bench::platform_study(bench::kPublishedPoses, bench::kPublishedSamples);
+  const Study first_order = bench::platform_study(bench::kPublishedPoses, bench::kPublishedSamples, 1);
   count_units("gauss-newton", published, Method::gauss_newton, 50);
   count_units("newton", published, Method::newton, 200);
   count_all_errors("published/all_errors/1_mm_1_deg", published, 1.0);
   count_all_errors("published/all_errors/0.1_mm_0.1_deg", published, 0.1);
+  count_units("platform gauss-newton", platform, Method::gauss_newton, 200);
+  count_units("platform newton", platform, Method::newton, 200);
+  count_units("platform first-order", first_order, Method::newton, 200);
+  count_all_errors("platform/all_errors/1_mm_1_deg", platform, 1.0);
+  count_all_errors("platform/all_errors/0.1_mm_0.1_deg", platform, 0.1);
+  count_all_errors("first-order/all_errors", first_order, 1.0);
 }

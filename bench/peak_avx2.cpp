@@ -5,5 +5,6 @@ namespace poesy::bench {
 using Vector [[gnu::vector_size(32)]] = double;
 
 std::uint64_t multiply_adds_avx2(std::uint64_t repetitions) { return multiply_adds<Vector>(repetitions); }
+double sum_avx2(std::span<const double> numbers) { return sum<Vector>(numbers); }
 
 }  // namespace poesy::bench

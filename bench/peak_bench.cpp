@@ -1,5 +1,9 @@
 #include <benchmark/benchmark.h>
 
+#include <span>
+#include <string>
+#include <vector>
+
 #include "bench/instruction_sets.h"
 #include "bench/peak.h"
 
@@ -14,17 +18,39 @@ void peak(benchmark::State& state, std::uint64_t (*multiply_adds)(std::uint64_t)
   state.counters["operations/s"] = benchmark::Counter(static_cast<double>(operations), benchmark::Counter::kIsRate);
 }
 
+/// The machine's limit for kernels that do nothing but read numbers from a cache or from memory.
+void read(benchmark::State& state, double (*sum)(std::span<const double>), std::size_t bytes) {
+  const std::vector<double> numbers(bytes / sizeof(double), 1.0);
+  std::uint64_t passes = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(sum(numbers));
+    ++passes;
+  }
+  state.counters["bytes/s"] =
+      benchmark::Counter(static_cast<double>(passes) * static_cast<double>(bytes), benchmark::Counter::kIsRate);
+}
+
+template <class Case>
+void add(const std::string& name, Case run) {
+  benchmark::RegisterBenchmark(name.c_str(), run)->ThreadRange(1, 2)->UseRealTime()->MeasureProcessCPUTime();
+}
+
 void add_all() {
   for (const std::string& isa : bench::instruction_sets()) {
     auto* multiply_adds = bench::multiply_adds_plain;
+    auto* sum = bench::sum_plain;
 #ifdef __x86_64__
-    if (isa == "avx2") multiply_adds = bench::multiply_adds_avx2;
-    if (isa == "avx512") multiply_adds = bench::multiply_adds_avx512;
+    if (isa == "avx2") {
+      multiply_adds = bench::multiply_adds_avx2;
+      sum = bench::sum_avx2;
+    } else if (isa == "avx512") {
+      multiply_adds = bench::multiply_adds_avx512;
+      sum = bench::sum_avx512;
+    }
 #endif
-    benchmark::RegisterBenchmark(("peak/" + isa).c_str(), [=](benchmark::State& state) { peak(state, multiply_adds); })
-        ->ThreadRange(1, 2)
-        ->UseRealTime()
-        ->MeasureProcessCPUTime();
+    add("peak/" + isa, [=](benchmark::State& state) { peak(state, multiply_adds); });
+    add("read/second_cache/" + isa, [=](benchmark::State& state) { read(state, sum, std::size_t{512} << 10); });
+    add("read/memory/" + isa, [=](benchmark::State& state) { read(state, sum, std::size_t{1} << 30); });
   }
 }
 

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <span>
 
 #include "bench/peak.h"
 
@@ -21,6 +24,25 @@ static std::uint64_t multiply_adds(std::uint64_t repetitions) {
   }
   for (Vector& each : x) asm volatile("" : : "m"(each));
   return repetitions * kAccumulators * (2 * sizeof(Vector) / sizeof(double));
+}
+
+template <class Vector>
+static double sum(std::span<const double> numbers) {
+  constexpr std::size_t kLanes = sizeof(Vector) / sizeof(double);
+  constexpr std::size_t kSums = 8;
+  Vector sums[kSums] = {};
+  for (std::size_t at = 0; at < numbers.size(); at += kSums * kLanes) {
+    for (std::size_t k = 0; k < kSums; ++k) {
+      Vector read;
+      std::memcpy(&read, &numbers[at + k * kLanes], sizeof(Vector));
+      sums[k] += read;
+    }
+  }
+  double total = 0.0;
+  for (const Vector& each : sums) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) total += each[lane];
+  }
+  return total;
 }
 
 }  // namespace poesy::bench
