@@ -32,6 +32,7 @@
 #include "engine/study/bare_numbers.h"
 #include "engine/study/calibration.h"
 #include "engine/study/machine_file.h"
+#include "engine/study/mechanism_doubts.h"
 #include "engine/study/study_file.h"
 #include "engine/study/table_file.h"
 #include "engine/study/text_file.h"
@@ -199,6 +200,7 @@ int calibrate_machine(const CalibrateOptions& options) {
   const MachineFile file = read_machine_file(options.measured, model->description());
   const SelectedPoses measured = measured_poses(options.measured, file, *model);
   const SelectedPoses predicted = selected(study.poses, options.study, *model).value_or(without_repetition(measured));
+  for (const std::string& of_box : workspace_doubts(study, predicted.poses)) say(Message::warning, of_box);
   const auto& asked = study.analysis.calibration->candidates;
   const auto candidates = asked ? selected(*asked, options.study, *model) : std::nullopt;
   const std::vector<TypedNumber> typed = typed_numbers(study);

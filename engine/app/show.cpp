@@ -76,7 +76,11 @@ std::string study_lines(const StoredResult& result, std::size_t width) {
   const std::unique_ptr<Model> model = build_model(study->mechanism);
   std::vector<std::string> lines = model->remarks();
   for (const std::string& doubt : mechanism_doubts(study->mechanism, *model)) lines.push_back("warning: " + doubt);
-  if (!kind_of(result).report.words(result).from_tables) {
+  const StudyWords words = kind_of(result).report.words(result);
+  if (words.own_poses) {
+    for (const std::string& doubt : workspace_doubts(*study, result.poses)) lines.push_back("warning: " + doubt);
+  }
+  if (!words.from_tables) {
     lines.push_back(calibration_text(*study));
     lines.push_back(held_errors_text(*study));
   }

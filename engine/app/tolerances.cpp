@@ -6,6 +6,7 @@
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
 #include "engine/kinds/study_file.h"
+#include "engine/study/mechanism_doubts.h"
 #include "models/registry.h"
 
 namespace poesy::app {
@@ -15,6 +16,7 @@ int tolerances(const TolerancesOptions& options) {
   const StoredResult result = read_result_with_warning(options.result);
   if (const std::optional<Study> study = study_in(result, registry())) {
     warn_of_mechanism(*study, *build_model(study->mechanism));
+    for (const std::string& doubt : workspace_doubts(*study, result.poses)) say(Message::warning, doubt);
   }
   print(set_tolerances(result, options, registry(), output_width()));
   return kDone;

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
 #include <utility>
 
 #include "engine/base/text.h"
+#include "engine/study/mechanism_doubts.h"
 #include "engine/study/outside_poses.h"
 
 namespace poesy {
@@ -103,6 +105,7 @@ std::vector<std::string> doubts_of(const Study& study, const SelectedPoses& pose
     of_poses = outside_pose_text(trajectory.file, trajectory.from_file.table, poses.poses, study.model());
   }
   if (!of_poses.empty()) doubts.push_back(std::move(of_poses));
+  std::ranges::move(workspace_doubts(study, poses.poses), std::back_inserter(doubts));
   return doubts;
 }
 

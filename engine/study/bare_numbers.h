@@ -18,8 +18,8 @@ namespace poesy {
 std::string outside_pose_text(std::string_view file, const PoseTable& table, const PoseSet& poses,
                               const ModelDescription& model);
 
-/// All warnings about numbers in the tables that the study names, one line for each warning. poses: the poses that the
-/// study selects.
+/// All warnings about numbers in the tables that the study names, and about the boxes in which it seeks poses
+/// (workspace_doubts()), one line for each warning. poses: the poses that the study selects.
 std::vector<std::string> doubts_of(const Study& study, const SelectedPoses& poses);
 
 /// Warns of an error that is more than ten times as large as the size that the study gives this error (error_size()).

@@ -6,6 +6,8 @@
 #include <cstddef>
 
 #include "engine/base/units.h"
+#include "engine/study/calibration.h"
+#include "engine/study/poses/unusual_workspace.h"
 
 namespace poesy {
 namespace {
@@ -40,6 +42,20 @@ std::vector<std::string> geometry_doubts(const MechanismChoice& mechanism) {
 std::vector<std::string> mechanism_doubts(const MechanismChoice& mechanism, const Model& model) {
   std::vector<std::string> list = geometry_doubts(mechanism);
   for (const std::string& unusual : model.unusual_geometry()) list.push_back(asked_back(unusual));
+  return list;
+}
+
+std::vector<std::string> workspace_doubts(const Study& study, const PoseSet& poses) {
+  std::vector<std::string> list;
+  const auto add = [&](std::string_view table, const PoseSelection& selection, const PoseSet& selected) {
+    const std::string clause = unusual_workspace(selection, selected, study.model());
+    if (!clause.empty()) list.push_back(asked_back(fmt::format("[{}] workspace: {}", table, clause)));
+  };
+  add("poses", study.poses, poses);
+  if (!study.analysis.calibration) return list;
+  const CalibrationTable& calibration = *study.analysis.calibration;
+  if (calibration.poses) add("analysis.calibration.poses", *calibration.poses, {});
+  if (calibration.candidates) add("analysis.calibration.candidates", *calibration.candidates, {});
   return list;
 }
 

@@ -21,4 +21,8 @@ std::vector<std::string> geometry_doubts(const MechanismChoice& mechanism);
 /// (Model::unusual_geometry). model: the mechanism.
 std::vector<std::string> mechanism_doubts(const MechanismChoice& mechanism, const Model& model);
 
+/// Questions about the boxes in which a study seeks poses, one line each: a box that looks as if a sign or a unit were
+/// wrong (unusual_workspace()). poses: the poses that [poses] selects.
+std::vector<std::string> workspace_doubts(const Study& study, const PoseSet& poses);
+
 }  // namespace poesy

@@ -1,9 +1,13 @@
 """What the program says of a study apart from its results: what it holds constant, what looks like a slip, and what may
 help where samples did not converge."""
 
+import html
+import re
+
 from poesy_program import GALLERY, STUDY, ProgramTest, main
 
 HELD = "held constant: 30 errors of set 'benign' at 1 mm and 1 deg"
+RESULTS = GALLERY.parent
 CASES = """\
 format = "poesy-study"
 version = 1
@@ -95,6 +99,38 @@ class StudyNotes(ProgramTest):
         self.write_rps()
         self.assertEqual(self.errors_of("run", "study.toml", "-o", "r.h5", "--quiet"), "")
         self.assertNotIn("warning", self.succeeds("show", "r.h5"))
+
+    def write_tricept(self, z):
+        self.write("tricept.toml", (GALLERY / "tricept/tricept.toml").read_text())
+        box = f'workspace = {{ rx = ["-20 deg", "20 deg"], ry = ["-20 deg", "20 deg"], z = {z} }}'
+        study = (GALLERY / "tricept/yield.toml").read_text().replace("count = 20", f"count = 5\n{box}")
+        self.write("study.toml", re.sub("samples = .*", "samples = 20", study))
+
+    def test_a_workspace_of_a_study_with_another_sign(self):
+        """Every command that selects the poses, or shows results at them, asks about it."""
+        self.write_tricept('["600 mm", "800 mm"]')
+        asked = ("[poses] workspace: z is from 600 mm to 800 mm, in the mechanism's workspace from -800 mm to -600 mm; "
+                 "is that meant?")
+        warned = f"poesy: warning: {asked}\n"
+        self.assertEqual(self.errors_of("check", "study.toml"), warned)
+        self.assertIn(warned, self.errors_of("run", "study.toml", "-o", "r.h5", "--quiet"))
+        swept = self.errors_of("sweep", "study.toml", "--set", "geometry.a=250,260mm", "-o", "s.h5", "--quiet")
+        self.assertEqual(swept.count(asked), 1, swept)
+        for result in ("r", "s"):
+            self.assertIn(f"warning: {asked}", " ".join(self.succeeds("show", f"{result}.h5").split()))
+            self.succeeds("report", f"{result}.h5")
+            self.assertIn(asked, html.unescape((self.folder / f"{result}.html").read_text()))
+
+    def test_a_workspace_of_a_study_that_is_shifted_a_little(self):
+        self.write_tricept('["-820 mm", "-650 mm"]')
+        self.assertEqual(self.errors_of("check", "study.toml"), "")
+
+    def test_the_workspaces_of_the_stored_studies(self):
+        of_box = [path for path in RESULTS.rglob("*.toml")
+                  if re.search(r"\[poses\][^\[]*^workspace", path.read_text(), re.M)]
+        self.assertGreater(len(of_box), 5)
+        for path in of_box:
+            self.assertNotIn("is that meant?", self.errors_of("check", path), path)
 
     def test_geometry_far_from_the_files(self):
         for given, asked in (("-250 mm", "a = -250 mm"), ("2.6 m", "a = 2600 mm"), ("24 mm", "a = 24 mm")):

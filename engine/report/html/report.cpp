@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -40,6 +41,11 @@ void warn_of_mechanism(const ReportedResult& result, Warnings& list) {
   if (result.model == nullptr || result.study == nullptr) return;
   for (const std::string& doubt : mechanism_doubts(result.study->mechanism, *result.model))
     list.push_back("The mechanism: " + doubt);
+}
+
+void warn_of_workspace(const ReportKind& kind, const ReportedResult& result, Warnings& list) {
+  if (result.study == nullptr || !kind.words(result.stored).own_poses) return;
+  std::ranges::move(workspace_doubts(*result.study, result.stored.poses), std::back_inserter(list));
 }
 
 void warn_of_unsolved(const StoredResult& result, const SolveTally& tally, Warnings& list) {
@@ -103,6 +109,7 @@ std::vector<std::string> warnings(const ReportKind& kind, const ReportedResult& 
   Warnings list;
   warn_of_changes(result, list);
   warn_of_mechanism(result, list);
+  warn_of_workspace(kind, result, list);
   warn_of_unsolved(stored, tally, list);
   warn_of_unsolved_poses(tally, list);
   warn_of_calibration(stored, list);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/study/poses/unusual_workspace.h"
+
 namespace poesy {
 
 void Workspace::unscale(std::span<const double> scaled, std::span<double> pose) const {
@@ -38,21 +40,7 @@ Judgement Workspace::judge(std::span<const double> pose) const {
           "move the workspace away from singular poses, or raise max_condition"};
 }
 
-std::string Workspace::apart() const {
-  const ModelDescription& model = model_->description();
-  for (std::size_t c = 0; c < std::min(model.pose_lower.size(), coordinates()); ++c) {
-    const Range& box = selection_->workspace[c];
-    const Range own{model.pose_lower[c], model.pose_upper[c]};
-    if (box.lower <= own.upper && box.upper >= own.lower) continue;
-    const PoseCoordinate& coordinate = model.pose_coordinates[c];
-    const auto text = [&](const Range& range) {
-      return "from " + readable_text({range.lower, coordinate.dimension}) + " to " +
-             readable_text({range.upper, coordinate.dimension});
-    };
-    return coordinate.name + " is " + text(box) + ", in the mechanism's workspace " + text(own);
-  }
-  return {};
-}
+std::string Workspace::apart() const { return apart_clause(selection_->workspace, model_->description()); }
 
 void tell(const WatchSearch& watch, const PoseSearch& search) {
   if (watch && !watch(search)) throw SearchStopped();

@@ -36,8 +36,7 @@ class Workspace {
   /// Converts one coordinate of a pose (SI) to its scaled coordinate.
   double scaled(std::size_t coordinate, double value) const;
   Judgement judge(std::span<const double> pose) const;  ///< Tells whether a pose (SI) is feasible.
-  /// Says in which coordinate the box is apart from the workspace that the mechanism states: "z is from 380 mm to 500
-  /// mm, in the mechanism's workspace from -500 mm to -380 mm". Empty if they overlap.
+  /// Says in which coordinate the box is apart from the workspace that the mechanism states; see apart_clause().
   std::string apart() const;
 
  private:
