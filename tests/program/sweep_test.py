@@ -129,6 +129,51 @@ class Sweep(ProgramTest):
             half = 1.96 * 100 * math.sqrt(gained + lost - (gained - lost) ** 2 / 2000) / 2000  # Wald's, of many machines
             self.assertAlmostEqual(high - low, 2 * half, delta=0.03 * half + 0.1)
 
+    def changes(self, name):
+        """The changes of the yield with their intervals, by the design's length: [length] (value, low, high)."""
+        with h5py.File(self.folder / "sweep.h5") as file:
+            lengths = [text.decode() for text in file["sweep/value"][:, 0]]
+            columns = [file[f"sweep/{name}{end}"][0] for end in ("", "_low", "_high")]
+        return dict(zip(lengths, zip(*columns)))
+
+    def test_changes_from_the_best_design(self):
+        """They are what the changes from the first design are, if the best design is the first."""
+        lengths = ["60 mm", "60.2 mm", "80 mm"]
+        orders = [lengths, [lengths[1], lengths[2], lengths[0]]]
+        found = {}
+        for order in orders:
+            self.swept(keys=("geometry.l_A=" + ",".join(order),))
+            found[order[0]] = self.changes("change"), self.changes("from_best")
+            with h5py.File(self.folder / "sweep.h5") as file:
+                best = order[int(file["sweep/merit"][0].argmax())]
+        self.swept(keys=("geometry.l_A=" + ",".join([best, *(length for length in lengths if length != best)]),))
+        expected = self.changes("change")
+        for _, from_best in found.values():
+            for length in lengths:
+                if length != best:
+                    self.assertEqual(from_best[length], expected[length])
+            self.assertTrue(math.isnan(from_best[best][0]))
+        self.assertNotEqual(*(changes for changes, _ in found.values()))
+
+    def test_what_is_not_told_apart_from_the_best(self):
+        self.swept(keys=("geometry.l_A=80,60,60.02,70 mm",))
+        table = json.loads(self.succeeds("show", "sweep.h5", "--json"))["tables"][0]
+        verdicts = {row["mechanism_geometry_l_A"]: row["verdict_on_best"] for row in table["rows"]}
+        near = [f"{length:g}" for length, verdict in verdicts.items() if verdict == "not told apart"]
+        self.assertEqual(sorted(verdicts.values()), ["not told apart", "the best", "worse", "worse"])
+        self.assertIn("each interval alone has the level 95 %; the best design was chosen", table["notes"][-1])
+        self.succeeds("report", "sweep.h5", "-o", "sweep.html")
+        page = (self.folder / "sweep.html").read_text()
+        self.assertRegex(page, r"The yield is largest at l_A = [0-9.]+ mm: [0-9.]+ %; "
+                               rf"not told apart from it: {near[0]} mm\. At l_A = 80 mm ")
+        self.assertIn("To tell the designs apart that are near the best, take more samples.", page)
+        self.assertIn("; all others are told apart from it.", self.page_of("geometry.l_A=60,70,80 mm"))
+
+    def page_of(self, key):
+        self.swept(keys=(key,))
+        self.succeeds("report", "sweep.h5", "-o", "sweep.html")
+        return (self.folder / "sweep.html").read_text()
+
     def test_paired_intervals_hold_the_truth(self):
         """Statistical: alpha 1e-4 for intervals that hold with 0.93 at least."""
         few = STUDY.replace("samples = 2000", "samples = 300")
@@ -170,7 +215,7 @@ class Sweep(ProgramTest):
     def test_show_export_and_report(self):
         self.swept()
         text = " ".join(self.succeeds("show", "sweep.h5").split())
-        for words in ("The yield by l_A, and its change from the first design", "those of a change are paired",
+        for words in ("The yield by l_A, and its change from the first and from the best design", "those of a change are paired",
                       "The root mean square of gap by l_A"):
             self.assertIn(words, text)
         self.succeeds("export", "sweep.h5", "-d", "tables")

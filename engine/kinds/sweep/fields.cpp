@@ -35,6 +35,9 @@ const Group<Result> kSweep{
      {"change", &Result::change, kQuantityUnit, "Figures of merit less those of the first design"},
      {"change_low", &Result::change_low, kQuantityUnit, "Lower ends of the intervals of changes"},
      {"change_high", &Result::change_high, kQuantityUnit, "Upper ends of the intervals of changes"},
+     {"from_best", &Result::from_best, kQuantityUnit, "Figures of merit less those of the best design"},
+     {"from_best_low", &Result::from_best_low, kQuantityUnit, "Lower ends of the intervals of changes from the best"},
+     {"from_best_high", &Result::from_best_high, kQuantityUnit, "Upper ends of the intervals of changes from the best"},
      {"gained", &Result::gained, "1", "Machines that are good in this design and rejected in the first",
       Presence::where_computed},
      {"lost", &Result::lost, "1", "Machines that are rejected in this design and good in the first",
@@ -84,6 +87,9 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
     add(" change", found.change);
     add(" change low", found.change_low);
     add(" change high", found.change_high);
+    add(" from best", found.from_best);
+    add(" from best low", found.from_best_low);
+    add(" from best high", found.from_best_high);
   }
   append_solve_columns(table, found.solves);
   table.last = {"verdict", [&](std::size_t d) { return found.verdict(d); }};

@@ -69,29 +69,55 @@ std::string_view required_otherwise(const SweepResult& found, std::size_t q) {
   return {};
 }
 
-/// The verdict on design d compared with the first one: "better", "worse", "not told apart" if the interval of the
-/// change includes zero, or "other limits" if the designs do not compare.
-std::string verdict_on_change(const SweepResult& found, std::size_t q, std::size_t d) {
+/// The verdict on a design from the interval of its change from another one: "better", "worse", or "not told apart" if
+/// the interval includes zero. Empty without an interval.
+std::string_view verdict_on_change(double low, double high, bool most_is_best) {
+  if (std::isnan(low) || std::isnan(high)) return "";
+  if (low <= 0.0 && high >= 0.0) return "not told apart";
+  return (low > 0.0) == most_is_best ? "better" : "worse";
+}
+
+/// The verdict on design d compared with the first one: as verdict_on_change(), or "other limits" if the designs do not
+/// compare.
+std::string verdict_on_first(const SweepResult& found, std::size_t q, std::size_t d) {
   if (const std::string_view topic = required_otherwise(found, q, d, 0); !topic.empty()) {
     return fmt::format("other {}", topic);
   }
-  const double low = found.change_low(q, d);
-  const double high = found.change_high(q, d);
-  if (std::isnan(low) || std::isnan(high)) return "";
-  if (low <= 0.0 && high >= 0.0) return "not told apart";
-  return (low > 0.0) == (found.most_is_best(q) != 0) ? "better" : "worse";
+  return std::string(verdict_on_change(found.change_low(q, d), found.change_high(q, d), found.most_is_best(q) != 0));
 }
 
-/// The design with the best value of figure of merit q; none if all values are unknown.
-std::optional<std::size_t> best_design(const SweepResult& found, std::size_t q) {
-  std::optional<std::size_t> best;
+std::string_view verdict_on_best(const SweepResult& found, std::size_t q, std::size_t d) {
+  if (d == best_design(found, q)) return "the best";
+  return verdict_on_change(found.from_best_low(q, d), found.from_best_high(q, d), found.most_is_best(q) != 0);
+}
+
+/// The designs that are not told apart from the best one.
+std::vector<std::size_t> near_best(const SweepResult& found, std::size_t q) {
+  std::vector<std::size_t> list;
   for (std::size_t d = 0; d < found.designs(); ++d) {
-    if (std::isnan(found.merit(q, d))) continue;
-    const bool is_better = !best || (found.most_is_best(q) != 0 ? found.merit(q, d) > found.merit(q, *best)
-                                                                : found.merit(q, d) < found.merit(q, *best));
-    if (is_better) best = d;
+    if (verdict_on_best(found, q, d) == "not told apart") list.push_back(d);
   }
-  return best;
+  return list;
+}
+
+/// Names of designs: "490, 500 mm" if only one key differs, and it is a number.
+std::string joined_names(const SweepResult& found, std::span<const std::size_t> designs) {
+  constexpr std::size_t kMost = 8;
+  const bool numbers = found.keys.size() == 1 && has_numbers(found, 0);
+  std::vector<std::string> names;
+  for (const std::size_t d : designs) {
+    names.push_back(numbers ? number_text(found.number(d, 0), 12) : fmt::format("({})", design_name(found, d)));
+  }
+  return some_names(names, kMost) + (numbers && !found.unit(0).empty() ? " " + found.unit(0) : "");
+}
+
+/// A clause on the designs that may be as good as the best one: "; not told apart from it: 490, 500 mm". Empty if the
+/// changes have no intervals.
+std::string near_best_clause(const SweepResult& found, std::size_t q) {
+  if (!has_any(found.from_best_low.row(q))) return {};
+  const std::vector<std::size_t> near = near_best(found, q);
+  return near.empty() ? "; all others are told apart from it"
+                      : "; not told apart from it: " + joined_names(found, near);
 }
 
 std::string names_of_keys(const SweepResult& found) {
@@ -119,22 +145,31 @@ std::string no_best_text(const SweepResult& found, std::size_t q, std::string_vi
       at_design(found, q, found.designs() - 1));
 }
 
-/// A sentence on the best design: "The yield is largest at R = 375 mm: 78.9 %; at R = 150 mm it is 14.1 % (+64.8
-/// percentage points, interval +63.5 to +66.1)."
+/// Sentences on the best design: "The yield is largest at R = 375 mm: 78.9 %; not told apart from it: 350 mm. At R =
+/// 150 mm it is 14.1 % (+64.8 percentage points, interval +63.5 to +66.1)."
 std::string best_text(const SweepResult& found, std::size_t q) {
   if (const std::string_view topic = required_otherwise(found, q); !topic.empty()) return no_best_text(found, q, topic);
   const std::optional<std::size_t> best = best_design(found, q);
   if (!best) return fmt::format("The {} is not known of any design.", found.quantities[q]);
-  std::string text =
-      fmt::format("The {} is {} at {}: {}", found.quantities[q], found.most_is_best(q) != 0 ? "largest" : "smallest",
-                  design_name(found, *best), value_text(found, q, found.merit(q, *best)));
-  if (*best == 0) return text + ", the first design.";
-  text += fmt::format("; at {} it is {} ({:+.3g}{}", design_name(found, 0), value_text(found, q, found.merit(q, 0)),
+  std::string text = fmt::format("The {} is {} at {}: {}{}{}.", found.quantities[q],
+                                 found.most_is_best(q) != 0 ? "largest" : "smallest", design_name(found, *best),
+                                 value_text(found, q, found.merit(q, *best)), *best == 0 ? ", the first design" : "",
+                                 near_best_clause(found, q));
+  if (*best == 0) return text;
+  text += fmt::format(" At {} it is {} ({:+.3g}{}", design_name(found, 0), value_text(found, q, found.merit(q, 0)),
                       found.change(q, *best), unit_of_change(found, q));
   if (!std::isnan(found.change_low(q, *best))) {
     text += fmt::format(", interval {:+.3g} to {:+.3g}", found.change_low(q, *best), found.change_high(q, *best));
   }
   return text + ").";
+}
+
+/// What the intervals of changes from the best design do not contain.
+std::string best_note(const SweepResult& found) {
+  return fmt::format(
+      "against the best: each interval alone has the level {}; the best design was chosen by the same numbers, so its "
+      "value tends to be too good",
+      percent_text(found.conf_level));
 }
 
 std::string interval_note(const SweepResult& found, std::size_t q) {
@@ -171,12 +206,17 @@ FilledColumn key_column(const SweepResult& found, std::size_t k) {
           [&found, k](std::size_t d) { return number_cell(found.number(d, k), 12); }};
 }
 
+/// True if a table shows changes from the best design: they have intervals, and there are more than two designs.
+bool shows_best(const SweepResult& found, std::size_t q) {
+  return found.designs() > 2 && required_otherwise(found, q).empty() && has_any(found.from_best_low.row(q));
+}
+
 /// The table of one figure of merit, with a row for each design.
 Table quantity_table(const SweepResult& found, std::size_t q) {
   const std::string& unit = found.quantity_unit(q);
   Table table{.name = slug(found.quantities[q]),
-              .caption = fmt::format("The {} by {}, and its change from the first design", found.quantities[q],
-                                     names_of_keys(found)),
+              .caption = fmt::format("The {} by {}, and its change from the first{} design", found.quantities[q],
+                                     names_of_keys(found), shows_best(found, q) ? " and from the best" : ""),
               .columns = {}};
   std::vector<FilledColumn> columns;
   for (std::size_t k = 0; k < found.keys.size(); ++k) columns.push_back(key_column(found, k));
@@ -201,13 +241,21 @@ Table quantity_table(const SweepResult& found, std::size_t q) {
     change("change_low", "low", found.change_low);
     change("change_high", "high", found.change_high);
     columns.push_back({text_column("verdict", "against the first"),
-                       [&, q](std::size_t d) { return text_cell(verdict_on_change(found, q, d)); }});
+                       [&, q](std::size_t d) { return text_cell(verdict_on_first(found, q, d)); }});
     table.notes.push_back(interval_note(found, q));
   }
   if (const std::string_view topic = required_otherwise(found, q); !topic.empty()) {
     table.notes.push_back(fmt::format(
         "other {0}: a {1} under other {0} does not say which design is better; sweep other keys with the same {0}",
         topic, found.quantities[q]));
+  }
+  if (shows_best(found, q)) {
+    change("from_best", "from best", found.from_best);
+    change("from_best_low", "low", found.from_best_low, 2);
+    change("from_best_high", "high", found.from_best_high, 2);
+    columns.push_back({text_column("verdict_on_best", "against the best"),
+                       [&, q](std::size_t d) { return text_cell(verdict_on_best(found, q, d)); }});
+    table.notes.push_back(best_note(found));
   }
   if (std::ranges::any_of(found.verdict.all(), [](const std::string& verdict) { return verdict != "none"; })) {
     columns.push_back(
@@ -238,16 +286,27 @@ SolveTally tally(const StoredResult& result) {
   return {"design", design_names(found), 1, found.solves};
 }
 
-/// Advice that follows from the best design by the first figure of merit.
-std::string advice(const SweepResult& found) {
-  const std::size_t q = 0;
+/// A sentence on how certain it is which design is the best. Empty if the changes have no intervals.
+std::string best_certainty(const SweepResult& found, std::size_t q) {
+  if (!required_otherwise(found, q).empty() || !has_any(found.from_best_low.row(q))) return {};
+  return fmt::format(
+      " Each design is compared with the best by an interval that alone has the level {}; the best was chosen after "
+      "all were seen, so its value tends to be too good.",
+      percent_text(found.conf_level));
+}
+
+/// Advice that follows from the best design.
+std::string what_to_do(const SweepResult& found, std::size_t q) {
   if (const std::string_view topic = required_otherwise(found, q); !topic.empty()) {
     return fmt::format("Compare designs with the same {}.", topic);
   }
   const std::optional<std::size_t> best = best_design(found, q);
-  const bool at_an_end = best && (*best == 0 || *best + 1 == found.designs());
-  return at_an_end ? "The best design is at an end of the sweep: look beyond it."
-                   : "The best design lies within the sweep: look closer around it.";
+  const std::string more =
+      near_best(found, q).empty() ? "" : " To tell the designs apart that are near the best, take more samples.";
+  if (best && (*best == 0 || *best + 1 == found.designs())) {
+    return "The best design is at an end of the sweep: look beyond it." + more;
+  }
+  return "The best design lies within the sweep: look closer around it." + more;
 }
 
 Answer answer(const StoredResult& result) {
@@ -255,10 +314,11 @@ Answer answer(const StoredResult& result) {
   std::string best;
   for (std::size_t q = 0; q < found.quantities.size(); ++q) best += (q == 0 ? "" : " ") + best_text(found, q);
   const bool paired = std::ranges::any_of(found.is_paired.all(), [](std::uint8_t is) { return is != 0; });
-  return {{"Answer", best},
-          {"How sure", paired ? "All designs have the same machines, so their differences are surer than their values."
-                              : "All designs draw the same errors."},
-          {"What to do", advice(found)}};
+  const std::string sure = paired
+                               ? "All designs have the same machines, so their differences are surer than their values."
+                               : "All designs draw the same errors.";
+  const std::size_t q = 0;
+  return {{"Answer", best}, {"How sure", sure + best_certainty(found, q)}, {"What to do", what_to_do(found, q)}};
 }
 
 /// Designs as points of curves over the first key, with a curve for each combination of the other keys' values.

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,13 +47,19 @@ struct SweepResult {
   Numbers change;       ///< figure of merit minus that of the first design
   Numbers change_low;   ///< lower ends of the intervals of changes
   Numbers change_high;  ///< upper ends of the intervals of changes
+  /// Figure of merit minus that of the best design (best_design()), with the ends of its interval as for changes from
+  /// the first design. Each interval alone has the confidence level, and does not contain that the best design was
+  /// chosen by the same numbers.
+  Numbers from_best;
+  Numbers from_best_low;   ///< lower ends of these intervals
+  Numbers from_best_high;  ///< upper ends of these intervals
   /// Number of machines that are good in this design and rejected in the first one; empty unless yields are
   /// paired.
   Array<std::uint64_t, axis::Design> gained;
   Array<std::uint64_t, axis::Design> lost;      ///< number of machines that are rejected in this design and good in the
                                                 ///< first one
   Array<std::uint64_t, axis::Design> machines;  ///< number of machines in each design
-  double conf_level = kNaN;                     ///< confidence level of the intervals; NaN if there are none
+  double conf_level = kNaN;                     ///< confidence level of the intervals
 
   std::size_t designs() const { return solves.size(); }  ///< The number of designs.
 };
@@ -62,6 +69,9 @@ std::string design_name(const SweepResult& found, std::size_t design);
 
 /// The last part of a key's name; the whole name if another key has the same last part.
 std::string short_key(const SweepResult& found, std::size_t key);
+
+/// The design with the best value of a figure of merit, the first of those that have it; none if all values are NaN.
+std::optional<std::size_t> best_design(const SweepResult& found, std::size_t quantity);
 
 /// The sweep in a stored result. Precondition: the result is of kind `sweep`.
 inline const SweepResult& sweep_of(const StoredResult& result) { return found_of<SweepResult>(result); }

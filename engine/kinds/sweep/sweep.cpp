@@ -32,22 +32,32 @@ std::string verdict_of(const StoredResult& stored) {
   return stored.verdicts->passed() ? "kept" : "not kept";
 }
 
+/// For each machine of a design, true if the machine is rejected.
+using Rejected = std::vector<bool>;
+
 /// The numbers of machines that two designs judge differently.
 struct Discordant {
-  std::uint64_t gained = 0;  ///< machines that are rejected only in the first design
-  std::uint64_t lost = 0;    ///< machines that are rejected only in the other design
+  std::uint64_t gained = 0;  ///< machines that are rejected only in the first of them
+  std::uint64_t lost = 0;    ///< machines that are rejected only in the other one
 };
 
-Discordant discordant(std::span<const std::uint8_t> first, std::span<const std::uint8_t> other) {
+Discordant discordant(const Rejected& first, const Rejected& other) {
   Discordant count;
   for (std::size_t n = 0; n < first.size(); ++n) {
-    count.gained += first[n] > other[n] ? 1U : 0U;
-    count.lost += first[n] < other[n] ? 1U : 0U;
+    count.gained += first[n] && !other[n] ? 1U : 0U;
+    count.lost += !first[n] && other[n] ? 1U : 0U;
   }
   return count;
 }
 
-/// Compares designs with the first design, one after the other.
+/// Arrays of a result for the changes from one design to all others.
+struct Changes {
+  SweepResult::Numbers& value;
+  SweepResult::Numbers& low;
+  SweepResult::Numbers& high;
+};
+
+/// Collects designs one after the other, and compares each with the first one and with the best one.
 class Comparer {
  public:
   Comparer(std::span<const SweptKey> keys, std::span<const SweptDesign> designs, std::string response)
@@ -55,20 +65,33 @@ class Comparer {
 
   /// Adds the next design. rejected: [machines] 1 if the machine is rejected, otherwise 0; empty if the design has no
   /// machines.
-  void add(const StoredResult& stored, std::vector<std::uint8_t> rejected) {
+  void add(const StoredResult& stored, const std::vector<std::uint8_t>& rejected) {
     const std::size_t d = found_.solves.size();
     const ReportKind& kind = kind_of(stored).report;
     if (d == 0) begin(stored);
     found_.solves.push_back(kind.tally(stored).total());
     found_.content_sha256(d) = stored.content_sha256;
     found_.verdict(d) = verdict_of(stored);
-    const std::vector<Merit> merits = merits_of(stored);
-    if (d == 0) begin(stored, merits, std::move(rejected));
-    for (std::size_t q = 0; q < first_.size(); ++q) compare(q, d, merits);
-    if (!first_rejected_.empty() && d > 0) pair(d, rejected);
+    merits_.push_back(merits_of(stored));
+    if (d == 0) begin(stored, merits_.front(), !rejected.empty());
+    if (has_machines_) {
+      rejected_.emplace_back(rejected.begin(), rejected.end());
+      found_.machines(d) = rejected.size();
+    }
+    for (std::size_t q = 0; q < found_.quantities.size(); ++q) keep(q, d);
   }
 
-  SweepResult result() && { return std::move(found_); }
+  /// The comparison. Precondition: all designs were added.
+  SweepResult result() && {
+    if (has_machines_) pair_machines();
+    for (std::size_t q = 0; q < found_.quantities.size(); ++q) {
+      compare_all_with(0, q, {found_.change, found_.change_low, found_.change_high});
+      if (const auto best = best_design(found_, q)) {
+        compare_all_with(*best, q, {found_.from_best, found_.from_best_low, found_.from_best_high});
+      }
+    }
+    return std::move(found_);
+  }
 
  private:
   /// Records the kind of the studies and the values of all designs.
@@ -100,11 +123,11 @@ class Comparer {
     found_.response = response_;
   }
 
-  /// Records the figures of merit of the first design and which of its machines are rejected.
-  void begin(const StoredResult& stored, const std::vector<Merit>& merits, std::vector<std::uint8_t> rejected) {
-    first_ = merits;
+  /// Records what the figures of merit of all designs are, from those of the first design. judges_machines: true if the
+  /// machines of that design were judged.
+  void begin(const StoredResult& stored, const std::vector<Merit>& merits, bool judges_machines) {
     const bool has_yield = stored.verdicts && stored.verdicts->yield;
-    if (has_yield) first_rejected_ = std::move(rejected);
+    has_machines_ = has_yield && judges_machines;
     const std::size_t count = merits.size();
     found_.quantity_unit = decltype(found_.quantity_unit)({count});
     found_.most_is_best = decltype(found_.most_is_best)({count});
@@ -114,17 +137,15 @@ class Comparer {
       found_.quantity_unit(q) = merits[q].unit;
       found_.most_is_best(q) = merits[q].most_best ? 1 : 0;
     }
-    for (auto* numbers :
-         {&found_.merit, &found_.low, &found_.high, &found_.change, &found_.change_low, &found_.change_high}) {
+    for (auto* numbers : {&found_.merit, &found_.low, &found_.high, &found_.change, &found_.change_low,
+                          &found_.change_high, &found_.from_best, &found_.from_best_low, &found_.from_best_high}) {
       *numbers = SweepResult::Numbers({count, designs_.size()}, kNaN);
     }
-    if (has_yield) found_.conf_level = stored.verdicts->yield->conf_level;
-    if (first_rejected_.empty()) return;
-    found_.is_paired(yield_at()) = 1;
+    found_.conf_level = has_yield ? stored.verdicts->yield->conf_level : designs_.front().study.analysis.conf_level;
+    if (!has_machines_) return;
     for (auto* counts : {&found_.gained, &found_.lost, &found_.machines}) {
       *counts = Array<std::uint64_t, axis::Design>({designs_.size()}, std::uint64_t{0});
     }
-    found_.machines(0) = first_rejected_.size();
   }
 
   std::vector<Merit> merits_of(const StoredResult& stored) const {
@@ -141,43 +162,68 @@ class Comparer {
                      "give the parts of an allocation costs, or sweep a study of another kind");
   }
 
-  void compare(std::size_t q, std::size_t d, const std::vector<Merit>& merits) {
-    const auto own = std::ranges::find(merits, first_[q].what, &Merit::what);
-    if (own == merits.end()) return;
+  /// The figure of merit q of design d; null if the design does not have it.
+  const Merit* find(std::size_t q, std::size_t d) const {
+    const auto at = std::ranges::find(merits_[d], found_.quantities[q], &Merit::what);
+    return at == merits_[d].end() ? nullptr : &*at;
+  }
+
+  void keep(std::size_t q, std::size_t d) {
+    const Merit* own = find(q, d);
+    if (own == nullptr) return;
     found_.merit(q, d) = own->value;
     found_.low(q, d) = own->low;
     found_.high(q, d) = own->high;
-    if (d == 0) return;
-    const MeritChange change = change_of(first_[q], *own);
-    found_.change(q, d) = change.value;
-    found_.change_low(q, d) = change.low;
-    found_.change_high(q, d) = change.high;
+  }
+
+  /// Counts the machines that a design and the first one judge differently, if all designs have the same machines. With
+  /// adaptive samples, designs may have different numbers of machines.
+  void pair_machines() {
+    if (!std::ranges::all_of(rejected_, [&](const Rejected& own) { return own.size() == rejected_.front().size(); })) {
+      return;
+    }
+    found_.is_paired(yield_at()) = 1;
+    for (std::size_t d = 1; d < rejected_.size(); ++d) {
+      const Discordant count = discordant(rejected_.front(), rejected_[d]);
+      found_.gained(d) = count.gained;
+      found_.lost(d) = count.lost;
+    }
+  }
+
+  /// Sets the changes of figure of merit q from the reference design to all others.
+  void compare_all_with(std::size_t reference, std::size_t q, const Changes& changes) const {
+    const Merit* from = find(q, reference);
+    for (std::size_t d = 0; d < merits_.size(); ++d) {
+      const Merit* own = find(q, d);
+      if (d == reference || from == nullptr || own == nullptr) continue;
+      MeritChange change = change_of(*from, *own);
+      if (found_.is_paired(q) != 0) take_pairs(reference, d, change);
+      changes.value(q, d) = change.value;
+      changes.low(q, d) = change.low;
+      changes.high(q, d) = change.high;
+    }
+  }
+
+  /// Replaces the interval of a change of the yield by the paired interval, which is narrower, because both designs
+  /// have the same machines.
+  void take_pairs(std::size_t from, std::size_t to, MeritChange& change) const {
+    const Discordant count = discordant(rejected_[from], rejected_[to]);
+    const Interval paired = paired_change(count.gained, count.lost, rejected_[from].size(), found_.conf_level).interval;
+    change.low = 100.0 * paired.low;
+    change.high = 100.0 * paired.high;
   }
 
   /// The position of the yield among the figures of merit. Precondition: there is a yield.
   std::size_t yield_at() const {
-    return static_cast<std::size_t>(std::ranges::find(first_, kYieldMerit, &Merit::what) - first_.begin());
-  }
-
-  /// Replaces the interval of the change of the yield by the paired interval, because both designs have the same
-  /// machines. With adaptive samples, designs may have different numbers of machines; then the wider interval stays.
-  void pair(std::size_t d, std::span<const std::uint8_t> rejected) {
-    const std::size_t q = yield_at();
-    found_.machines(d) = rejected.size();
-    if (rejected.size() != first_rejected_.size()) return static_cast<void>(found_.is_paired(q) = 0);
-    const Discordant count = discordant(first_rejected_, rejected);
-    const Estimate change = paired_change(count.gained, count.lost, rejected.size(), found_.conf_level);
-    found_.gained(d) = count.gained;
-    found_.lost(d) = count.lost;
-    found_.change_low(q, d) = 100.0 * change.interval.low;
-    found_.change_high(q, d) = 100.0 * change.interval.high;
+    return static_cast<std::size_t>(std::ranges::find(found_.quantities, kYieldMerit) - found_.quantities.begin());
   }
 
   std::span<const SweptKey> keys_;
   std::span<const SweptDesign> designs_;
   std::string response_;
-  std::vector<Merit> first_;
-  std::vector<std::uint8_t> first_rejected_;
+  std::vector<std::vector<Merit>> merits_;  ///< [designs] the figures of merit of each design
+  std::vector<Rejected> rejected_;          ///< [designs] empty unless has_machines_
+  bool has_machines_ = false;               ///< true if the first design has a yield of machines that were judged
   SweepResult found_;
 };
 
@@ -196,6 +242,17 @@ std::string design_name(const SweepResult& found, std::size_t design) {
     text += fmt::format("{}{} = {}", k == 0 ? "" : ", ", short_key(found, k), found.value(design, k));
   }
   return text;
+}
+
+std::optional<std::size_t> best_design(const SweepResult& found, std::size_t quantity) {
+  std::optional<std::size_t> best;
+  const double sign = found.most_is_best(quantity) != 0 ? 1.0 : -1.0;
+  for (std::size_t d = 0; d < found.designs(); ++d) {
+    const double value = found.merit(quantity, d);
+    if (std::isnan(value)) continue;
+    if (!best || sign * value > sign * found.merit(quantity, *best)) best = d;
+  }
+  return best;
 }
 
 void check_sweep(std::span<const SweptDesign> designs, const std::string& path) {
@@ -226,7 +283,7 @@ std::optional<SweepResult> run_sweep(std::span<const SweptKey> keys, std::span<c
     if (!result || !options.checkpoints->complete()) return std::nullopt;
     const StoredResult stored =
         as_stored(design.study, design.poses, std::move(result->found), result->drawing ? &*result->drawing : nullptr);
-    comparer.add(stored, std::move(result->rejected));
+    comparer.add(stored, result->rejected);
   }
   return std::move(comparer).result();
 }

@@ -30,8 +30,9 @@ def sweep(
     >>> radii.to_xarray("sweep")["merit"].sel(quantity="yield")                       # doctest: +SKIP
 
     The numbers of each design have the same bits as those of `poesy.run` for its study. The group "sweep" of the result
-    has the values, the figures of merit with their intervals, and their changes from the first design. Intervals of
-    changes take into account that all designs use the same draws. ``result.plot.sweep()`` draws the figures of merit.
+    has the values, the figures of merit with their intervals, and their changes from the first design and
+    from the best one. Intervals of changes take into account that all designs use the same draws.
+    ``result.plot.sweep()`` draws the figures of merit.
 
     Parameters
     ----------
