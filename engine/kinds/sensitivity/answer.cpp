@@ -1,11 +1,14 @@
 #include "engine/kinds/sensitivity/answer.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/kinds/sensitivity/fidelity.h"
@@ -26,7 +29,9 @@ namespace {
 /// The errors that cause most of the mean square of the response by which errors are ranked, and those that together
 /// cause hardly any of it.
 struct FewMatter {
-  std::vector<std::string> names;   ///< errors that together cause the share kMost of the mean square, largest first
+  /// Errors that together cause at least the share kMost of the mean square, largest first. If the last one that is
+  /// needed belongs to a family (Family), they contain all of the family.
+  std::vector<std::string> names;
   double sum = 0.0;                 ///< share of the mean square that these errors cause
   std::vector<std::string> hardly;  ///< errors that together cause less than the share kHardly of the mean square
 };
@@ -37,27 +42,85 @@ constexpr double kHardly = 0.01;
 /// this share of its effect.
 constexpr double kCalibrated = 0.9;
 
+/// The name of an error without the number of its limb: "rod_left" for "rod_left_3". Names of copies of one error
+/// differ in this number alone. The whole name if it does not end with a number.
+std::string_view stem_of(std::string_view name) {
+  const std::size_t end = name.find_last_not_of("0123456789");
+  const bool has_number = end != std::string_view::npos && end > 0 && end + 1 < name.size() && name[end] == '_';
+  return has_number ? name.substr(0, end) : name;
+}
+
+/// Finds the errors between which a cut after the error `last` would be arbitrary.
+class Family {
+ public:
+  /// among: the errors that may belong to the family.
+  Family(const StoredResult& result, std::size_t response, std::size_t last, std::span<const std::size_t> among)
+      : result_(&result), shown_(shown_indices(result)), response_(response), among_(among), members_{last} {
+    add_copies();
+    add_alike();
+    add_copies();
+  }
+
+  bool has(std::size_t p) const { return std::ranges::find(members_, p) != members_.end(); }
+
+ private:
+  /// Adds the errors that are copies of a member in another limb.
+  void add_copies() {
+    add_if([&](std::size_t p, std::size_t member) {
+      return stem_of(result_->factors[p].name) == stem_of(result_->factors[member].name);
+    });
+  }
+
+  /// Adds the errors whose effects are not told apart from that of a member: the intervals overlap.
+  void add_alike() {
+    add_if([&](std::size_t p, std::size_t member) { return low(p) <= high(member) && low(member) <= high(p); });
+  }
+
+  template <class Related>
+  void add_if(const Related& related) {
+    const std::vector<std::size_t> before = members_;
+    for (const std::size_t p : among_) {
+      if (!has(p) && std::ranges::any_of(before, [&](std::size_t member) { return related(p, member); })) {
+        members_.push_back(p);
+      }
+    }
+  }
+
+  double low(std::size_t p) const { return shown_.low(response_, p) * result_->factor_sigma[p]; }
+  double high(std::size_t p) const { return shown_.high(response_, p) * result_->factor_sigma[p]; }
+
+  const StoredResult* result_;
+  GlobalIndices shown_;
+  std::size_t response_;
+  std::span<const std::size_t> among_;
+  std::vector<std::size_t> members_;
+};
+
 /// Finds the errors that FewMatter lists; none if an effect is not known, or if no error has an effect.
 std::optional<FewMatter> few_matter(const StoredResult& result) {
   const std::size_t response = response_named(result, default_ranking(result));
   const MeanSquare found =
       mean_square(response_study(sensitivity_of(result), result.factor_sigma, result.factor_mean, response));
   const std::vector<double> shares = mean_square_shares(found, result.factor_sigma);
-  if (std::ranges::any_of(shares, [](double share) { return std::isnan(share); })) return std::nullopt;
+  const bool known = std::ranges::none_of(shares, [](double share) { return std::isnan(share); });
+  if (shares.empty() || !known) return std::nullopt;
   std::vector<std::size_t> order = positions(shares.size());
   std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t p) { return shares[p]; });
+  std::size_t most = 0;
+  for (double sum = 0.0; sum < kMost && most < order.size(); ++most) sum += shares[order[most]];
+  std::size_t loose = order.size();
+  for (double sum = 0.0; loose > most && sum + shares[order[loose - 1]] < kHardly; --loose) {
+    sum += shares[order[loose - 1]];
+  }
   FewMatter few;
-  while (few.sum < kMost && few.names.size() < order.size()) {
-    const std::size_t p = order[few.names.size()];
-    few.names.push_back(result.factors[p].name);
-    few.sum += shares[p];
+  const std::span<const std::size_t> between = std::span(order).subspan(most, loose - most);
+  const Family family(result, response, order[most - 1], between);
+  for (std::size_t n = 0; n < loose; ++n) {
+    if (n >= most && !family.has(order[n])) continue;
+    few.names.push_back(result.factors[order[n]].name);
+    few.sum += shares[order[n]];
   }
-  double tail = 0.0;
-  for (std::size_t n = order.size(); n-- > 0;) {
-    tail += shares[order[n]];
-    if (tail >= kHardly) break;
-    few.hardly.push_back(result.factors[order[n]].name);
-  }
+  for (std::size_t n = order.size(); n-- > loose;) few.hardly.push_back(result.factors[order[n]].name);
   return few;
 }
 
@@ -120,15 +183,47 @@ Measures measures(const StoredResult& result, const std::vector<std::string>& na
   return found;
 }
 
-/// "Calibrate zero_2, zero_1, zero_3 (100 % removable). Hold tilt_x to tight tolerances. "
+/// Names of errors in which copies are one item: "zero_1/2/3".
+std::vector<std::string> with_copies_together(const std::vector<std::string>& names) {
+  std::vector<std::string> list;
+  std::vector<std::string_view> stems;
+  for (const std::string& name : names) {
+    const std::string_view stem = stem_of(name);
+    if (std::ranges::find(stems, stem) != stems.end()) continue;
+    stems.push_back(stem);
+    std::vector<std::string_view> numbers;
+    for (const std::string& other : names) {
+      if (other != stem && stem_of(other) == stem) numbers.push_back(std::string_view(other).substr(stem.size() + 1));
+    }
+    std::ranges::sort(numbers, {}, [](std::string_view number) { return std::pair(number.size(), number); });
+    list.push_back(numbers.empty() ? name : fmt::format("{}_{}", stem, fmt::join(numbers, "/")));
+  }
+  return list;
+}
+
+/// "6 errors" if several of these names are shown as one item (with_copies_together()); otherwise empty.
+std::string count_of_copies(const std::vector<std::string>& names) {
+  if (with_copies_together(names).size() == names.size()) return {};
+  return counted(names.size(), "error", "errors");
+}
+
+/// "Calibrate zero_1/2/3 (3 errors, 100 % removable). Hold rod_left_1/2/3, rod_right_1/2/3 (6 errors) to tight
+/// tolerances. "
 std::string measures_text(const Measures& found) {
+  constexpr std::size_t kShown = 3;
   std::string text;
   if (!found.calibrate.empty()) {
-    text = fmt::format("Calibrate {} ({}{} removable). ", some_names(found.calibrate, 3),
+    const std::string count = count_of_copies(found.calibrate);
+    text = fmt::format("Calibrate {} ({}{}{} removable). ", some_names(with_copies_together(found.calibrate), kShown),
+                       count.empty() ? "" : count + ", ",
                        found.calibrate.size() > 1 && found.removable < 1.0 ? "at least " : "",
                        percent_text(found.removable));
   }
-  if (!found.hold.empty()) text += fmt::format("Hold {} to tight tolerances. ", some_names(found.hold, 3));
+  if (!found.hold.empty()) {
+    const std::string count = count_of_copies(found.hold);
+    text += fmt::format("Hold {}{} to tight tolerances. ", some_names(with_copies_together(found.hold), kShown),
+                        count.empty() ? "" : " (" + count + ")");
+  }
   return text;
 }
 
