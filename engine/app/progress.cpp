@@ -70,12 +70,15 @@ std::string failures_text(const Progress& progress) {
 std::string left_text(const ProgressFacts& facts) {
   const Progress& progress = facts.progress;
   if (!(facts.rate > 0.0)) return "time left unknown";
-  const auto left = static_cast<double>(progress.total - std::min(progress.solves, progress.total));
+  const std::uint64_t of_design = progress.total - std::min(progress.solves, progress.total);
+  const auto left = static_cast<double>(of_design + (facts.designs - facts.design) * progress.total);
   return readable_duration(std::max(1.0, std::ceil(left / facts.rate))) + " left";
 }
 
 std::string stage_text(const ProgressFacts& facts) {
-  return facts.stage > 1 ? fmt::format("stage {}: ", facts.stage) : std::string();
+  const std::string stage = facts.stage > 1 ? fmt::format("stage {}", facts.stage) : std::string();
+  if (facts.designs == 0) return stage.empty() ? stage : stage + ": ";
+  return fmt::format("design {} of {}{}{}: ", facts.design, facts.designs, stage.empty() ? "" : ", ", stage);
 }
 
 std::string bar(double share, std::size_t length) {
@@ -175,6 +178,10 @@ std::string search_line(const PoseSearch& search) {
                      search.candidates);
 }
 
+std::string validation_line(std::size_t done, std::size_t designs) {
+  return fmt::format("validating designs: {} of {} done", done, designs);
+}
+
 ProgressLine::ProgressLine(bool quiet)
     : quiet_(quiet), live_(shows_live_lines(STDERR_FILENO)), next_(Clock::now() + interval()) {}
 
@@ -200,6 +207,14 @@ void ProgressLine::write(const std::function<std::string()>& plain,
   open_ = live_;
 }
 
+void ProgressPrinter::begin_design(std::size_t design, std::size_t designs) {
+  rate_ = RecentRate(RecentRate::Clock::now());
+  done_ = 0;
+  stage_ = 1;
+  design_ = design;
+  designs_ = designs;
+}
+
 void ProgressPrinter::operator()(const Progress& progress) {
   const RecentRate::Clock::time_point now = RecentRate::Clock::now();
   const std::uint64_t done = progress.solves - progress.before;
@@ -210,7 +225,7 @@ void ProgressPrinter::operator()(const Progress& progress) {
   done_ = done;
   rate_.add(now, done);
   if (!line_.is_due(now)) return;
-  const ProgressFacts facts{progress, rate_.per_second(), stage_};
+  const ProgressFacts facts{progress, rate_.per_second(), stage_, design_, designs_};
   line_.write([&] { return plain_line(facts); }, [&](std::size_t width) { return live_line(facts, width); });
 }
 

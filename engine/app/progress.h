@@ -49,11 +49,15 @@ class RecentRate {
 /// What a line of progress shows.
 struct ProgressFacts {
   Progress progress;
-  double rate = 0.0;      ///< present rate, samples per second; 0 as long as it is not known
-  std::size_t stage = 1;  ///< number of the present stage, from 1; its size is known when it begins
+  double rate = 0.0;        ///< present rate, samples per second; 0 as long as it is not known
+  std::size_t stage = 1;    ///< number of the present stage, from 1; its size is known when it begins
+  std::size_t design = 0;   ///< number of the present design of a sweep, from 1; 0: the run is not a sweep
+  std::size_t designs = 0;  ///< number of designs of the sweep; 0: the run is not a sweep
 };
 
-/// A line of progress as text: "43.2 % done, 7.21 M samples/s, 12 not converged (0.0012 %), 1 min 20 s left".
+/// A line of progress as text: "43.2 % done, 7.21 M samples/s, 12 not converged (0.0012 %), 1 min 20 s left". In a
+/// sweep it begins with "design 4 of 10: ", the percentage is that of this design, and the time left is that of all
+/// designs, as if each had as many solves as this one.
 std::string plain_line(const ProgressFacts& facts);
 
 /// A line of progress with a bar, in at most `width` columns of one byte each. If there is too little room, the bar
@@ -62,6 +66,9 @@ std::string live_line(const ProgressFacts& facts, std::size_t width);
 
 /// The progress of a search for poses as text: "looking for poses: 12 of 100 found, 34000 candidates".
 std::string search_line(const PoseSearch& search);
+
+/// The progress of the validation of a sweep as text: "validating designs: 3 of 10 done".
+std::string validation_line(std::size_t done, std::size_t designs);
 
 /// A line on stderr that shows progress. On a terminal the line is overwritten, at the terminal's present width. If
 /// stderr is not a terminal, a new line is written every few seconds. If `quiet` is set, nothing is written.
@@ -96,6 +103,8 @@ class ProgressPrinter {
  public:
   explicit ProgressPrinter(bool quiet) : line_(quiet), rate_(RecentRate::Clock::now()) {}
 
+  /// Tells that the next design of a sweep begins. design: its number, from 1.
+  void begin_design(std::size_t design, std::size_t designs);
   void operator()(const Progress& progress);
 
  private:
@@ -103,6 +112,8 @@ class ProgressPrinter {
   RecentRate rate_;
   std::uint64_t done_ = 0;
   std::size_t stage_ = 1;
+  std::size_t design_ = 0;
+  std::size_t designs_ = 0;
 };
 
 }  // namespace poesy::app

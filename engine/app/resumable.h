@@ -43,10 +43,10 @@ struct ResumeOptions {
   }
 };
 
-/// Ends the command line that continues a run: adds the options that commands with checkpoints share, and --resume.
-/// options: those of the command. Returns the command line as a shell reads it.
+/// Ends the command line that starts a run again: adds the options that commands with checkpoints share, except
+/// --resume. options: those of the command. Returns the command line as a shell reads it.
 template <class Options>
-std::string resume_command(std::vector<std::string> words, const Options& options) {
+std::string start_command(std::vector<std::string> words, const Options& options) {
   const auto add = [&](const std::string& name, const std::string& value) { words.insert(words.end(), {name, value}); };
   if (!options.result.empty()) add("-o", options.result);
   if (options.threads != 0) add("--threads", std::to_string(options.threads));
@@ -54,7 +54,6 @@ std::string resume_command(std::vector<std::string> words, const Options& option
   options.resume.add_words(words);
   if (options.quiet) words.emplace_back("--quiet");
   if (options.yes) words.emplace_back("--yes");
-  words.emplace_back("--resume");
   return shell_command(words);
 }
 
@@ -63,12 +62,12 @@ std::string resume_command(std::vector<std::string> words, const Options& option
 /// and no checkpoint.
 class ResumableRun {
  public:
-  /// Throws InputError or FileError if the run must not start. resume_command: the command line that messages show for
-  /// continuing the run.
-  ResumableRun(const ResumeOptions& options, const std::string& result_path, std::string resume_command)
+  /// Throws InputError or FileError if the run must not start. start_command: the command line that messages show for
+  /// starting the run again, and with --resume for continuing it.
+  ResumableRun(const ResumeOptions& options, const std::string& result_path, std::string start_command)
       : lock_(result_path),
         keep_checkpoint_(options.keep_checkpoint),
-        command_(std::move(resume_command)),
+        command_(std::move(start_command)),
         files_(result_path),
         every_(duration_of(parse_duration(options.every, "--checkpoint-every"))) {
     if (!options.max_wall.empty()) end_ = Clock::now() + duration_of(parse_duration(options.max_wall, "--max-wall"));
@@ -157,15 +156,15 @@ class ResumableRun {
     }
     if (files_.exist()) {
       say(Message::note, "the work up to the last checkpoint is kept in " + files_.newer() +
-                             "; when this is mended, continue with: " + command_);
+                             "; when this is mended, continue with: " + resume_command());
     }
   }
 
   /// To be called after an interruption. Tells the user how to continue.
   void explain_interruption() const {
-    say(Message::note,
-        files_.exist() ? "interrupted; the work so far is kept in " + files_.newer() + ", continue with: " + command_
-                       : "interrupted before anything was solved, start again with: " + command_);
+    say(Message::note, files_.exist() ? "interrupted; the work so far is kept in " + files_.newer() +
+                                            ", continue with: " + resume_command()
+                                      : "interrupted before anything was solved, start again with: " + command_);
   }
 
   /// Throws FileError because the state in the checkpoint cannot be read.
@@ -175,6 +174,8 @@ class ResumableRun {
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  std::string resume_command() const { return command_ + " --resume"; }
 
   /// Converts seconds to a clock duration. More than a century is shortened to a century, so that the number does not
   /// overflow.

@@ -62,13 +62,13 @@ struct RunCommandOptions {
   std::string program;  ///< name with which the program was called
 };
 
-/// The command line that continues this run. team: the ranks of the run; null for one process.
-std::string resume_command_of(const RunCommandOptions& options, const Team* team) {
+/// The command line that starts this run again. team: the ranks of the run; null for one process.
+std::string start_command_of(const RunCommandOptions& options, const Team* team) {
   std::vector<std::string> words;
   if (team != nullptr) words = {"mpirun", "-n", std::to_string(team->ranks().size())};
   words.insert(words.end(), {options.program, "run", options.study});
   if (options.shard) words.insert(words.end(), {"--shard", to_string(*options.shard)});
-  return resume_command(std::move(words), options);
+  return start_command(std::move(words), options);
 }
 
 /// The default path of a result in the current folder: study.h5 for study.toml, or study.2-of-5.h5 for its second shard
@@ -178,7 +178,7 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   const std::string path = check_result_path(named, inputs);
   if (kind_of(study).run.confirms) check_files_beside(path, inputs);
   start_threads(threads);  // Threads start before any checkpoint is written.
-  ResumableRun resumable(options.resume, path, resume_command_of(options, team));
+  ResumableRun resumable(options.resume, path, start_command_of(options, team));
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   auto poses = find_poses(study, *model, {.quiet = options.quiet, .stop = &stop});
   if (!poses) return explained_interruption(resumable);

@@ -51,12 +51,12 @@ struct SweepOptions {
   std::string program;  ///< name with which the program was called
 };
 
-/// The command line that continues this sweep.
-std::string resume_command_of(const SweepOptions& options) {
+/// The command line that starts this sweep again.
+std::string start_command_of(const SweepOptions& options) {
   std::vector<std::string> words{options.program, "sweep", options.study};
   for (const std::string& set : options.set) words.insert(words.end(), {"--set", set});
   if (!options.response.empty()) words.insert(words.end(), {"--response", options.response});
-  return resume_command(std::move(words), options);
+  return start_command(std::move(words), options);
 }
 
 /// The values of a design in words: "mechanism.geometry.R = 260 mm". given: the keys that the sweep changes, with their
@@ -129,7 +129,13 @@ std::optional<std::vector<SweptDesign>> designs_of(const SweepOptions& options,
                                                    std::span<const std::vector<GivenKey>> grid,
                                                    const std::atomic<bool>& stop, DesignDoubts& doubts) {
   std::vector<SweptDesign> designs;
+  ProgressLine line(options.quiet);
   for (const std::vector<GivenKey>& given : grid) {
+    if (stop) return std::nullopt;
+    if (line.is_due(ProgressLine::Clock::now())) {
+      const std::string text = validation_line(designs.size(), grid.size());
+      line.write([&] { return text; }, [&](std::size_t width) { return text.substr(0, width); });
+    }
     std::optional<SweptDesign> design = design_of(options, given, stop, doubts);
     if (!design) return std::nullopt;
     designs.push_back(*std::move(design));
@@ -170,7 +176,8 @@ std::optional<SweepResult> run_with_progress(const SweepOptions& options, std::s
       printer(progress);
       resumable.check_time();
     };
-    std::optional<SweepResult> found = run_sweep(keys, designs, options.response, run);
+    const auto begin = [&](std::size_t d) { printer.begin_design(d + 1, designs.size()); };
+    std::optional<SweepResult> found = run_sweep(keys, designs, options.response, run, begin);
     if (!found) return std::nullopt;
     const SolveCounts solves = total_of(found->solves);
     const RunTime time = resumable.time();
@@ -265,7 +272,7 @@ int sweep(const SweepOptions& options) {
       check_result_path(options.result.empty() ? stem + "_sweep.h5" : options.result, inputs_of(options.study, first));
   const std::size_t threads = resolved_threads(options.threads);
   start_threads(threads);  // Threads start before any checkpoint is written.
-  ResumableRun resumable(options.resume, path, resume_command_of(options));
+  ResumableRun resumable(options.resume, path, start_command_of(options));
   DesignDoubts doubts;
   const auto designs = designs_of(options, grid, stop, doubts);
   if (!designs) return interrupted(resumable);

@@ -43,6 +43,20 @@ TEST(PlainLine, NamesTheStage) {
   EXPECT_TRUE(plain_line(second).starts_with("stage 2: 43.2 % done"));
 }
 
+TEST(PlainLine, NamesTheDesignOfASweep) {
+  ProgressFacts fourth = facts();
+  fourth.design = 4;
+  fourth.designs = 10;
+  EXPECT_EQ(plain_line(fourth),
+            "design 4 of 10: 43.2 % done, 7.1 k samples/s, 12 not converged (0.0028 %), 15 min 30 s left");
+  fourth.stage = 2;
+  EXPECT_TRUE(plain_line(fourth).starts_with("design 4 of 10, stage 2: 43.2 % done"));
+}
+
+TEST(ValidationLine, SaysHowManyDesignsAreValid) {
+  EXPECT_EQ(validation_line(3, 10), "validating designs: 3 of 10 done");
+}
+
 TEST(PlainLine, IsNotReadyBeforeTheEnd) {
   ProgressFacts almost = facts();
   almost.progress.solves = 999999;

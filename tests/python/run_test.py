@@ -186,17 +186,20 @@ class Programs(FolderTest):
         lines = [
             "12.5 % done, 7.21 M samples/s, 0 not converged, 4 s left",
             "stage 2: 50.0 % done, 720 samples/s, 3 not converged (0.1 %), 1 min left",
+            "validating designs: 3 of 10 done",
+            "design 4 of 10: 50.0 % done, 720 samples/s, 3 not converged (0.1 %), 1 min left",
         ]
         said = "".join(f"echo '{line}' >&2; " for line in lines)
         poesy.program = self.fake(f"{said} echo 'poesy: warning: take care' >&2; cp {result('sensitivity').path} $4")
         heard = []
         with self.assertWarnsRegex(poesy.PoesyWarning, "^take care$"):
             found = poesy.run("study.toml", output=self.folder / "a.h5", progress=heard.append)
-        self.assertEqual([(one.share, one.stage, str(one)) for one in heard], [(0.125, 1, lines[0]), (0.5, 2, lines[1])])
+        self.assertEqual([(one.share, one.stage, str(one)) for one in heard], [(0.125, 1, lines[0]), (0.5, 2, lines[1]),
+                          (0.0, 1, lines[2]), (0.5, 4, lines[3])])
         self.assertEqual(found.messages, ())
         with mock.patch("builtins.print") as printed, warnings.catch_warnings(record=True):
             poesy.run("study.toml", output=self.folder / "a.h5", progress=True)
-        self.assertEqual(printed.call_count, 2)
+        self.assertEqual(printed.call_count, len(lines))
 
     def test_much_output_does_not_block(self):
         poesy.program = self.fake("yes 0123456789 | head -c 3000000; yes 'poesy: note' | head -c 300000 >&2")

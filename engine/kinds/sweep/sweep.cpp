@@ -273,11 +273,14 @@ void check_sweep(std::span<const SweptDesign> designs, const std::string& path) 
 }
 
 std::optional<SweepResult> run_sweep(std::span<const SweptKey> keys, std::span<const SweptDesign> designs,
-                                     const std::string& response, const RunOptions& options) {
+                                     const std::string& response, const RunOptions& options,
+                                     const std::function<void(std::size_t)>& begin) {
   RunOptions of_design = options;
   of_design.keep_rejected = true;
   Comparer comparer(keys, designs, response);
-  for (const SweptDesign& design : designs) {
+  for (std::size_t d = 0; d < designs.size(); ++d) {
+    const SweptDesign& design = designs[d];
+    begin(d);
     const std::unique_ptr<Model> model = build_model(design.study.mechanism);
     std::optional<StudyResult> result = run_study(design.study, *model, design.poses.poses, of_design);
     if (!result || !options.checkpoints->complete()) return std::nullopt;

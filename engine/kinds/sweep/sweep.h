@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -23,12 +24,14 @@ struct SweptDesign {
 /// merit, or they are of different kinds.
 void check_sweep(std::span<const SweptDesign> designs, const std::string& path);
 
-/// Runs the study of each design with the same draws, and compares each design with the first one. Returns nothing if
-/// the run was stopped. response: the response that figures of merit are about; empty: the one that ranks errors in the
-/// first design. options: must have checkpoints, which hold the states of all designs, in the order of the designs. The
-/// result of each design has the same bits as a run of this design alone. Precondition: check_sweep(). Throws
-/// InputError if the designs have no response or no figure of merit in common.
+/// Runs the study of each design with the same draws, and compares each design with the first one and with the best
+/// one. Returns nothing if the run was stopped. response: the response that figures of merit are about; empty: the one
+/// that ranks errors in the first design. options: must have checkpoints, which hold the states of all designs, in the
+/// order of the designs. The result of each design has the same bits as a run of this design alone. Precondition:
+/// check_sweep(). Throws InputError if the designs have no response or no figure of merit in common. begin: is called
+/// with the index of each design before its run.
 std::optional<SweepResult> run_sweep(std::span<const SweptKey> keys, std::span<const SweptDesign> designs,
-                                     const std::string& response, const RunOptions& options);
+                                     const std::string& response, const RunOptions& options,
+                                     const std::function<void(std::size_t)>& begin);
 
 }  // namespace poesy

@@ -21,7 +21,10 @@ DONE, TOO_MANY_NOT_CONVERGED, LIMIT_NOT_KEPT = 0, 5, 6
 _ERRORS: dict[int, type[Error]] = {1: InternalError, 2: StudyError, 3: FileError, 4: Interrupted}
 _BEGINNING = "poesy: "
 _WARNING = "poesy: warning: "
-_PROGRESS = re.compile(r"(?:stage (?P<stage>\d+): )?(?P<percent>[\d.]+) % done, |looking for poses: ")
+_PROGRESS = re.compile(
+    r"(?:(?:stage|design) (?P<stage>\d+)(?: of \d+)?(?:, stage \d+)?: )?(?P<percent>[\d.]+) % done, "
+    r"|looking for poses: |validating designs: "
+)
 
 
 @dataclass(frozen=True)
@@ -31,9 +34,11 @@ class Progress:
     Attributes
     ----------
     share
-        Share of the stage's solves that are done, 0 to 1; 0 while the program looks for poses.
+        Share of the stage's solves that are done, 0 to 1; 0 while the program looks for poses or
+        validates the designs of a sweep.
     stage
-        Number of the stage, from 1; above 1 only in studies that solve in several stages.
+        Number of the stage, from 1; above 1 only in studies that solve in several stages. In a sweep, the number of
+        the design.
     text
         The program's line of progress. While the program looks for poses, the number found. Then the share done, solves
         per second, samples that did not converge, and time left.

@@ -45,7 +45,7 @@ def sweep(
     response
         Response whose root mean square is compared. Default: the one by which the first design ranks errors.
     output, threads, seed, progress, resume, yes
-        As for `poesy.run`. If the kind solves in one stage, the stages of `Progress` are the designs.
+        As for `poesy.run`. The stages of `Progress` are the designs.
 
     Returns
     -------
