@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/base/text.h"
+#include "engine/base/units.h"
 
 namespace poesy::file {
 namespace {
@@ -46,8 +47,9 @@ class Parser {
     const Value value = sum();
     skip();
     if (at_ < text_.size()) unexpected();
-    if (!std::isfinite(value.si))
-      fail(0, "is not finite", "look for a division by zero or the root of a negative number");
+    if (!std::isfinite(value.si)) {
+      fail(0, "is not finite" + changed_text(), "look for a division by zero or the root of a negative number");
+    }
     return value;
   }
 
@@ -56,6 +58,19 @@ class Parser {
     Place place = expression_.place;
     if (place.column != 0 && expression_.quoted) place.column += 1 + at;
     throw InputError(place, expression_.key + " '" + printable(text_, 120) + "' " + problem, remedy);
+  }
+
+  /// The parameters whose values are not those of the file, because they may be in a wrong unit: " with R = 120000 mm
+  /// (the file has 120 mm)". Empty if there are none.
+  std::string changed_text() const {
+    std::string text;
+    for (std::size_t p = 0; p < std::min(parameters_.size(), values_.size()); ++p) {
+      const GeometryParameter& own = parameters_[p];
+      if (values_[p] == own.published) continue;
+      text += (text.empty() ? " with " : ", ") + own.name + " = " + readable_text({values_[p], own.dimension}) +
+              " (the file has " + readable_text({own.published, own.dimension}) + ")";
+    }
+    return text;
   }
 
   [[noreturn]] void unexpected() {

@@ -8,10 +8,10 @@
 namespace poesy::file {
 namespace {
 
-const std::vector<GeometryParameter> kParameters{{"a", Dimension::length, 0.0, ""},
-                                                 {"h", Dimension::length, 0.0, ""},
+const std::vector<GeometryParameter> kParameters{{"a", Dimension::length, 0.25, ""},
+                                                 {"h", Dimension::length, 0.6, ""},
                                                  {"zero", Dimension::length, 0.0, ""},
-                                                 {"tilt", Dimension::angle, 0.0, ""}};
+                                                 {"tilt", Dimension::angle, 0.1, ""}};
 const std::vector<double> kValues{0.25, 0.6, 0.0, 0.1};
 
 Value of(const std::string& text) {
@@ -111,6 +111,18 @@ TEST(Expression, Mistakes) {
     EXPECT_EQ(problem_of(text).substr(0, std::string(begin).size()), begin);
   }
   EXPECT_NE(problem_of(std::string(2000, '(')).find("longer than 1000 bytes"), std::string::npos);
+}
+
+TEST(Expression, NamesTheChangedParametersIfItIsNotFinite) {
+  const Expression leg{"sqrt(h*h - a*a)", "platform.origin[2]", {"m.toml", 3, 10}, true};
+  try {
+    evaluate(leg, kParameters, std::vector{250.0, 0.6, 0.0, 0.1});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "m.toml:3:11: platform.origin[2] 'sqrt(h*h - a*a)' is not finite with a = 250000 mm (the file has 250 "
+                 "mm); look for a division by zero or the root of a negative number");
+  }
 }
 
 TEST(Expression, DimensionThatIsDue) {
