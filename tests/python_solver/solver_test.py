@@ -71,6 +71,17 @@ class Warnings(unittest.TestCase):
         self.assertEqual(said, ["a = 2600 mm; the mechanism's file has 250 mm; is that meant?"])
 
 
+    def test_designs_of_an_optimiser(self):
+        """A question that holds for many designs with other numbers is asked once, and other questions are still asked."""
+        path = GALLERY / "tricept" / "tricept.toml"
+        self.assertEqual(self.said(lambda: poesy_solver.Evaluator(path)), [])
+        said = self.said(lambda: [poesy_solver.Evaluator(path, geometry={"h": h}) for h in (0.9, 0.91, 0.925)])
+        self.assertEqual(said, ["home has z = -900 mm, outside the workspace from -800 mm to -600 mm (coordinates are absolute); "
+                                "is that meant?"])
+        said = self.said(lambda: [poesy_solver.Evaluator(path, geometry={"a": a}) for a in (2.6, 2.7)])
+        self.assertEqual(said, ["a = 2600 mm; the mechanism's file has 250 mm; is that meant?"])
+
+
 class Numbers(unittest.TestCase):
     """The program's own, bit by bit."""
 

@@ -59,6 +59,21 @@ void warn(const std::string& text) {
   if (PyErr_WarnEx(warning.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
 }
 
+/// The attribute of PoesyWarning with the set of doubts that were given as warnings.
+constexpr char kAsked[] = "_asked";
+
+/// Gives a doubt about a mechanism as a warning, once in a process. Doubts that differ in their numbers only count as
+/// the same, because an optimiser makes a mechanism with other numbers in each call.
+void warn_once(const std::string& mechanism, const std::string& doubt) {
+  std::string words = doubt;
+  std::erase_if(words, [](char c) { return (c >= '0' && c <= '9') || c == '.' || c == '-'; });
+  py::set asked = py::module_::import("poesy_solver").attr(kWarning).attr(kAsked);
+  const py::str key(mechanism + ": " + words);
+  if (asked.contains(key)) return;
+  warn(doubt);
+  asked.add(key);
+}
+
 /// Refuses poses that the mechanism does not reach, and warns of those far outside its workspace.
 void check_poses(const ArraySolver& solver, std::span<const double> poses) {
   solver.check_poses(poses);
@@ -128,7 +143,7 @@ std::shared_ptr<ArraySolver> make_solver(const py::object& mechanism, const std:
                         .calibrated = calibrated,
                         .geometry = geometry};
   auto solver = std::make_shared<ArraySolver>(study_of(request));
-  for (const std::string& doubt : solver->doubts()) warn(doubt);
+  for (const std::string& doubt : solver->doubts()) warn_once(request.mechanism, doubt);
   return solver;
 }
 
@@ -170,6 +185,7 @@ py::object solve_many(const ArraySolver& solver, const py::object& poses, const 
 void add_warning(py::module_& module) {
   module.attr(kWarning) = py::reinterpret_steal<py::object>(
       PyErr_NewExceptionWithDoc("poesy_solver.PoesyWarning", kWarningText, PyExc_UserWarning, nullptr));
+  module.attr(kWarning).attr(kAsked) = py::set();
 }
 
 void add_status(py::module_& module) {
