@@ -97,8 +97,8 @@ FileError too_little_memory(const std::string& path, const std::string& work, co
 /// Warns on stderr of what looks like a mistake in the mechanism (mechanism_doubts()).
 void warn_of_mechanism(const Study& study, const Model& model);
 
-/// What looks like a mistake in the mechanism, in the numbers of the study's tables, and in the boxes in which it seeks
-/// poses (doubts_of()), one line each.
+/// What looks like a mistake in the mechanism, in the numbers of the study's tables, in the boxes in which it seeks
+/// poses (doubts_of()), and in the points of a calibrated study (correction_doubt()), one line each.
 std::vector<std::string> all_doubts(const Study& study, const Model& model, const SelectedPoses& poses);
 
 /// What the study holds constant, leaves as it is, or calibrates, one line each.

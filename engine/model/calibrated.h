@@ -9,12 +9,13 @@ namespace poesy {
 
 /// The text that describes the responses of a calibrated study to users, as a noun phrase.
 inline constexpr std::string_view kLeftByCalibration =
-    "what the best correction of the actuators leaves, with drive offsets chosen anew at each pose; no real "
-    "calibration is so good";
+    "what remains with the drives corrected at each pose so that the platform's points (metric_points) are best; for "
+    "another point, such as the tool, a calibration can be better";
 
 /// A model with the calibrated_evaluator() of the given model as its evaluator. Its responses are those that remain
-/// after the best correction of the actuators. It has no trace, because a trace shows uncorrected errors. Throws
-/// std::invalid_argument with a clause as its text if the given model has no such evaluator.
+/// after the correction of the actuators that is best for the platform's points (metric_points()). It has no trace,
+/// because a trace shows uncorrected errors. Throws std::invalid_argument with a clause as its text if the given model
+/// has no such evaluator.
 std::unique_ptr<Model> calibrated(std::unique_ptr<Model> model);
 
 }  // namespace poesy

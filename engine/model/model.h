@@ -327,7 +327,7 @@ class Model {
   /// The largest sensible magnitude of an error; infinite by default.
   virtual ErrorBound error_bound(FactorIndex /*factor*/) const { return {}; }
 
-  /// Points of the platform that define the metric "platform", in the platform's frame (m); empty if there are none.
+  /// The platform's points (its frame, m) by which the metric "platform" and corrections of the drives weigh, if any.
   virtual std::vector<PlatformPoint> metric_points() const { return {}; }
 
   /// The mobility of the mechanism, as lines of text for users; none if it was not computed.

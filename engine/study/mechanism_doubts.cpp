@@ -2,10 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <span>
 
 #include "engine/base/units.h"
+#include "engine/model/sketch.h"
 #include "engine/study/calibration.h"
 #include "engine/study/poses/unusual_workspace.h"
 
@@ -15,10 +20,73 @@ namespace {
 /// A value is far from another one if it is more than this many times larger or smaller.
 constexpr double kFar = 10.0;
 
+/// Points count as around another one if their root mean square distance from it is at most this share of the largest
+/// distance of a joint from it.
+constexpr double kAround = 0.05;
+
 bool is_far(double value, double own) {
   if (value == 0.0 || own == 0.0) return false;
   const double ratio = value / own;
   return ratio < 1.0 / kFar || ratio > kFar;  // also if the signs differ
+}
+
+using Vector = std::array<double, 3>;
+
+double distance(const Vector& a, const Vector& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
+
+/// A point at home, in the platform's frame.
+Vector in_platform(const SketchVector& point, const Sketch& home, const SketchedFrame& platform) {
+  Vector found{};
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    for (std::size_t c = 0; c < found.size(); ++c) {
+      found[k] += platform.axes[k][c] * (point[c] - home.platform[c]);
+    }
+  }
+  return found;
+}
+
+/// The frame of the platform at home, of which only the axes are meant; null if no limb ends at the platform.
+const SketchedFrame* platform_of(const Sketch& home) {
+  for (std::size_t limb = 0; limb < home.frames.size(); ++limb) {
+    if (home.ends_of(limb).to == 1 && !home.frames[limb].empty()) return &home.frames[limb].back();
+  }
+  return nullptr;
+}
+
+/// The points of the platform whose displacements have responses of their own: the tool as "tip", and named points.
+std::vector<SketchedPoint> points_with_responses(const Sketch& home) {
+  std::vector<SketchedPoint> points = home.points;
+  for (const SketchVector& tool : home.tool) points.push_back({"tip", tool});
+  return points;
+}
+
+/// Returns true if the response is a displacement of this point of the platform, or a response of the study with such a
+/// term.
+bool depends_on(const std::string& point, std::size_t response, const Study& study) {
+  const std::vector<Response>& responses = study.model().responses;
+  const std::string& name = responses[response].name;
+  const auto own = std::ranges::find(study.mechanism.responses, name, &OwnResponse::name);
+  if (own != study.mechanism.responses.end()) {
+    return std::ranges::any_of(own->terms,
+                               [&](const ResponseTerm& term) { return depends_on(point, term.response, study); });
+  }
+  return name == point + "_x" || name == point + "_y" || name == point + "_z" || name == point + "_position";
+}
+
+/// The root mean square distance of points of the platform from one of them.
+double rms_distance(std::span<const PlatformPoint> points, const Vector& from) {
+  double squares = 0.0;
+  for (const PlatformPoint& point : points) squares += std::pow(distance(point, from), 2);
+  return std::sqrt(squares / static_cast<double>(points.size()));
+}
+
+/// The largest distance of a joint from a point.
+double largest_distance(const Sketch& home, const SketchVector& from) {
+  double largest = 0.0;
+  for (const auto& limb : home.limbs) {
+    for (const SketchedJoint& joint : limb) largest = std::max(largest, distance(joint.point, from));
+  }
+  return largest;
 }
 
 }  // namespace
@@ -57,6 +125,28 @@ std::vector<std::string> workspace_doubts(const Study& study, const PoseSet& pos
   if (calibration.poses) add("analysis.calibration.poses", *calibration.poses, {});
   if (calibration.candidates) add("analysis.calibration.candidates", *calibration.candidates, {});
   return list;
+}
+
+std::string correction_doubt(const Study& study, const Model& model) {
+  const std::vector<PlatformPoint> corrected = model.metric_points();
+  if (!study.mechanism.calibrated || !study.mechanism.file || corrected.empty()) return {};
+  const std::optional<Sketch> home = model.sketch({});
+  const SketchedFrame* const platform = home ? platform_of(*home) : nullptr;
+  if (platform == nullptr) return {};
+  for (const SketchedPoint& point : points_with_responses(*home)) {
+    const double away = rms_distance(corrected, in_platform(point.point, *home, *platform));
+    if (away <= kAround * largest_distance(*home, point.point)) continue;
+    for (const ResponseLimit& limit : study.analysis.limits) {
+      if (!depends_on(point.name, limit.response, study)) continue;
+      return fmt::format(
+          "calibrated = true corrects the drives so that the platform's points (metric_points) are best, but the limit "
+          "of {} is on a point that is {} away from them (root mean square), for which a calibration can be better; "
+          "put metric_points around {}",
+          study.model().responses[limit.response].name, readable_text({away, Dimension::length}, 4),
+          point.name == "tip" ? "the tool" : "'" + point.name + "'");
+    }
+  }
+  return {};
 }
 
 }  // namespace poesy

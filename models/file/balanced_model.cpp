@@ -124,7 +124,6 @@ class BalancedModel final : public TrackedModel {
   Separation separation(std::span<const double> pose) const override { return assembly::separation(model_, pose); }
 
   std::vector<PlatformPoint> metric_points() const override {
-    if (!model_.deforms) return {};
     std::vector<PlatformPoint> points;
     for (const Vector3& point : model_.assembly.points) points.push_back({point.x(), point.y(), point.z()});
     return points;

@@ -335,9 +335,12 @@ const Keys<PlatformLines, Nothing>& platform_keys() {
           optional("points", read_by("table or list of points", read_points), "none",
                    "Named points of the platform frame, [platform.points], whose displacements are reported behind the "
                    "tool's; a list of points is read as `metric_points`."),
-          optional("metric_points", read_by("list of points", read_metric_points),
-                   "the point of each limb's last joint that moves",
-                   "Points of the platform frame by which mismatch of limbs is weighed."),
+          optional(
+              "metric_points", read_by("list of points", read_metric_points),
+              "the point of each limb's last joint that moves",
+              "Points of the platform frame by which mismatch of limbs is weighed, and for which corrections of the "
+              "drives (`calibrated = true`, removable shares) are best: the root mean square of their "
+              "displacements is smallest."),
           optional("mass", kept("mass", expression, &P::mass), "none", "Its mass, on which gravity acts: \"3 kg\"."),
           optional("centre", kept("point", point, &P::centre), "its origin", "Its centre of mass, in its frame.")}};
   return keys;

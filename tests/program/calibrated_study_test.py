@@ -96,12 +96,36 @@ class CalibratedStudy(ProgramTest):
         shown = " ".join(self.succeeds("show", "r.h5").split())
         self.assertIn("as they are made, without calibration", shown)
         self.assertIn("with this calibration: 4 fitted errors, 7 measured values at 7 poses", shown)
-        self.assertIn("which no calibration reaches 100", shown)
+        self.assertIn("with the drives corrected at each pose, best for the platform's points 100", shown)
+        self.assertIn("for another point, such as the tool, a calibration can be better", shown)
         self.assertRegex(" ".join(self.succeeds("show", "r.h5", "--method").split()),
                          r"Responses are what a calibration of each machine leaves \(fitted: \[zero_1, zero_2, zero_3, radius\]; "
                          r"measured: \[z\]; .*noise of z: 0.005 mm.*\)\.")
         self.succeeds("export", "r.h5", "-d", "out")
         self.assertIn("uncalibrated,uncalibrated_ci_low", (self.folder / "out/yield.csv").read_text())
+
+    def test_points_away_from_the_limited_one_are_told(self):
+        """calibrated = true is best for metric_points: a limit on the tool away from them is warned of."""
+        plain = STUDY.split("[analysis.calibration]")[0].replace("20000", "20").replace("delta-puu.toml", "m.toml")
+        mechanism = (self.folder / "delta-puu.toml").read_text()
+        around = '[[0, 0, "-t"], ["4 mm", 0, "-t"], [0, "4 mm", "-t"]]'
+        near = mechanism.replace('tool        = [0, 0, "-t"]', f'tool        = [0, 0, "-t"]\nmetric_points = {around}')
+        self.assertNotEqual(near, mechanism)
+        wide = near.replace("4 mm", "900 mm")
+        asked = plain.split("limits")[0] + 'calibrated = true\nlimits = { RESPONSE = "1 mm" }\n'
+        told = "put metric_points around the tool"
+        for text, response, is_told in ((mechanism, "tip_position", True), (mechanism, "tip_z", True),
+                                        (mechanism, "position", False), (near, "tip_position", False),
+                                        (wide, "tip_position", True)):
+            with self.subTest(response, is_told=is_told):
+                self.write("m.toml", text)
+                self.write("study.toml", asked.replace("RESPONSE", response))
+                for command in (("check", "study.toml"), ("run", "study.toml", "-o", "r.h5", "--quiet")):
+                    said = self.poesy(*command).stderr.decode()
+                    self.assertEqual(told in said, is_told, said)
+        self.write("m.toml", mechanism)
+        self.write("study.toml", asked.replace("RESPONSE", "tip_position").replace("calibrated = true\n", ""))
+        self.assertNotIn("metric_points", self.poesy("check", "study.toml").stderr.decode())
 
     def test_same_bits(self):
         """On threads and shards, after a stop, and as the continuation of a shorter study."""

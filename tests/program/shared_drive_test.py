@@ -114,7 +114,7 @@ class SharedDrives(ProgramTest):
         for words in ("q, driven by motor_1</title>", ">motor_3</text>"):
             self.assertIn(words, picture)
         self.run_study(YIELD + "calibrated = true\n", "out.h5").close()
-        bound = "no real calibration is so good"
+        bound = "for another point, such as the tool, a calibration can be better"
         self.assertIn(bound, re.sub(r"\s+", " ", self.succeeds("show", "out.h5")))
         self.succeeds("report", "out.h5")
         self.assertIn(bound, (self.folder / "out.html").read_text())

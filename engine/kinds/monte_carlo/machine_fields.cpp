@@ -129,7 +129,7 @@ const Group<PartsYield> kPartsYield{
 const Group<CalibrationYields> kCalibrationYields{
     "/yield/calibration",
     "The yield of the same machines without their calibration, and with the best correction of the actuators at each "
-    "pose, which no real calibration reaches; /yield/value is that with the calibration of the study",
+    "pose for the platform's points (metric_points); /yield/value is that with the calibration of the study",
     {},
     {},
     {{"uncalibrated", &CalibrationYields::uncalibrated, "1", "The yield without calibration"},

@@ -224,8 +224,11 @@ Table calibration_table(const StoredResult& result) {
                   counted(found.measured_poses, "pose", "poses")),
       with.value, with.ci_low, with.ci_high);
   if (!std::isnan(found.best)) {
-    add("with the best correction of each pose, which no calibration reaches", found.best, found.best_ci_low,
+    add("with the drives corrected at each pose, best for the platform's points", found.best, found.best_ci_low,
         found.best_ci_high);
+    table.notes.emplace_back(
+        "corrected at each pose: so that the platform's points (metric_points) are best; for another point, such as "
+        "the tool, a calibration can be better");
   }
   table.notes.emplace_back("all other numbers are those with this calibration");
   if (found.not_fitted > 0) {

@@ -41,7 +41,7 @@ metric      "platform" or "published": how mismatch of angle is weighed against 
 fidelity    "exact", or "first-order" where the mechanism has it.
 factors     the errors that are given, in the order of the rows of an array: a factor set, "all", or a list of names.
             The others are zero.
-calibrated  True: responses are what the best correction of the actuators leaves, each pose by itself.
+calibrated  True: responses are what remains with the drives corrected at each pose, best for metric_points.
 geometry    parameters of the geometry that differ from those of the mechanism: {"a": 0.26} in SI, or {"a": "260 mm"}.
 
 Raises InputError and FileError with the program's sentence.)";
