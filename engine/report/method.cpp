@@ -74,8 +74,10 @@ std::vector<std::string> settings_of(const StoredResult& result, std::string_vie
   return values;
 }
 
-/// Sentences on how the study reads the zones of a drawing and, in an allocation, the tolerances of parts.
-std::string zones_sentence(const StoredResult& result) {
+/// Sentences on how the study reads the zones of a drawing and, in an allocation, the tolerances of parts. Empty if
+/// errors are given, because the scatter in zones then has no effect.
+std::string zones_sentence(const StoredResult& result, const StudyWords& words) {
+  if (!words.draws && !words.fitted) return {};
   const std::string zones = setting(result, "errors", "zones");
   const std::vector<std::string> parts = settings_of(result, "analysis.parts", {"sigmas", "cpk"});
   std::string text;
@@ -99,7 +101,8 @@ std::string measured_sentence(const StoredResult& result) {
 }
 
 /// The sentence on the means of errors: "Means that the study states: offset 0.05 mm."
-std::string means_sentence(const StoredResult& result) {
+std::string means_sentence(const StoredResult& result, const StudyWords& words) {
+  if (words.from_tables && !words.fitted) return {};  // the means of the study have no effect on given errors
   std::vector<std::string> errors;
   for (std::size_t p = 0; p < result.factor_mean.size(); ++p) {
     if (result.factor_mean[p] == 0.0) continue;
@@ -111,7 +114,8 @@ std::string means_sentence(const StoredResult& result) {
 
 /// The sentence on background errors: "Background, the same in all machines: 12 errors, linear = 0.1 mm, angular = 0.01
 /// deg."
-std::string background_sentence(const StoredResult& result) {
+std::string background_sentence(const StoredResult& result, const StudyWords& words) {
+  if (words.from_tables && !words.fitted) return {};  // errors that a table does not give are zero
   const std::string factors = study_setting(result.study_text, "analysis.background", "factors");
   if (factors.empty()) return {};
   const bool is_list = factors.starts_with('[');
@@ -214,11 +218,11 @@ std::string method_text(const ReportKind& kind, const StoredResult& result, cons
   std::string text = fmt::format("The study of kind {} of the mechanism {} was made with poesy {} ({}).", result.kind,
                                  result.model, result.poesy_version, result.git_commit);
   for (const std::string& sentence :
-       {geometry_sentence(study), errors_sentence(result, words), zones_sentence(result), means_sentence(result),
-        measured_sentence(result), background_sentence(result), poses_sentence(result, words),
-        fidelity_sentence(result), method_of(kind, result).text, calibration_sentence(result, words),
-        metric_sentence(result), solves_sentence(kind.tally(result).total()), limits_sentence(result),
-        repeat_sentence(result, words)}) {
+       {geometry_sentence(study), errors_sentence(result, words), zones_sentence(result, words),
+        means_sentence(result, words), measured_sentence(result), background_sentence(result, words),
+        poses_sentence(result, words), fidelity_sentence(result), method_of(kind, result).text,
+        calibration_sentence(result, words), metric_sentence(result), solves_sentence(kind.tally(result).total()),
+        limits_sentence(result), repeat_sentence(result, words)}) {
     if (!sentence.empty()) text += " " + sentence;
   }
   return text;

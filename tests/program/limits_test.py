@@ -167,6 +167,28 @@ class Limits(ProgramTest):
         self.assertTrue(row["place"].startswith("sample 2, pose "))
         self.assertIn(b"1 of 3 rows are within the limit", done.stdout)
 
+    def test_errors_without_a_column_are_told(self):
+        """They are zero, in what `evaluate` prints, in tables, in the report and in the method."""
+        self.write("cases.toml", 'format = "poesy-study"\nversion = 1\n' + CASES % "1e-3")
+        self.write("poses.csv", "z,beta,gamma\n-0.22,0.1,0.2\n")
+        self.write("errors.csv", "part,delta_1_1_y\na,0\n")
+        files = ("--poses", "poses.csv", "--errors", "errors.csv")
+        said = self.succeeds("evaluate", "cases.toml", *files, "-o", "rows.h5", "--quiet")
+        with h5py.File(self.folder / "rows.h5") as file:
+            zero = [name.decode() for name in file["zero_error"][:]]
+        self.assertNotIn("delta_1_1_y", zero)
+        told = f"{len(zero)} of {len(zero) + 1} errors have no column and are zero ({zero[0]}, {zero[1]}, "
+        self.succeeds("report", "rows.h5", "-o", "rows.html")
+        report = (self.folder / "rows.html").read_text()
+        self.assertNotIn("nothing here is up to chance", report)
+        for text in (said, self.succeeds("show", "rows.h5"), report):
+            text = " ".join(text.split())
+            self.assertIn(told, text)
+            self.assertIn("errors.machines in a Monte Carlo study draws them", text)
+        method = " ".join(self.succeeds("show", "rows.h5", "--method").split())
+        self.assertIn("1 geometric error was given values.", method)
+        self.assertIn(f"{len(zero)} other errors were zero.", method)
+
     def test_places_have_no_exponents(self):
         self.write("cases.toml", 'format = "poesy-study"\nversion = 1\n' + CASES % "1e-3")
         self.write("errors.csv", "delta_1_1_y\n0.0001\n")

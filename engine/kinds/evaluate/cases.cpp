@@ -9,6 +9,7 @@
 
 #include "engine/kinds/calibrated_model.h"
 #include "engine/kinds/evaluate/kind.h"
+#include "engine/report/display.h"
 #include "engine/result/result_parts.h"
 #include "engine/run/evaluation.h"
 #include "engine/run/result.h"
@@ -69,6 +70,10 @@ Evaluation evaluation(EvaluationResult solves, const ErrorTable& errors, Pairing
   found.pairing = pairing;
   found.errors = decltype(found.errors)({errors.rows, errors.factors.size()}, errors.values);
   found.labels = errors.labels;
+  for (std::size_t f = 0; f < model.factors.size(); ++f) {
+    if (std::ranges::find(errors.factors, FactorIndex(f)) != errors.factors.end()) continue;
+    found.zero_errors.push_back(model.factors[f].name);
+  }
   return found;
 }
 
@@ -133,6 +138,15 @@ std::size_t worst_row(const std::vector<RowOutcome>& outcomes) {
     if (worst == outcomes.size() || std::abs(outcomes[row].extreme) > std::abs(outcomes[worst].extreme)) worst = row;
   }
   return worst;
+}
+
+std::string zero_errors_text(const Evaluation& found) {
+  constexpr std::size_t kMostNamed = 5;
+  const std::size_t zero = found.zero_errors.size();
+  if (zero == 0) return {};
+  return fmt::format(
+      "{} of {} errors have no column and are zero ({}); errors.machines in a Monte Carlo study draws them", zero,
+      zero + found.errors.length<axis::Factor>(), some_names(found.zero_errors, kMostNamed));
 }
 
 constinit const Kind kEvaluateKind{.study = kEvaluateStudy,

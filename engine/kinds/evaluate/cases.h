@@ -50,6 +50,7 @@ struct Evaluation {
   Pairing pairing = Pairing::every_pose_with_every_row;  ///< how poses and rows of errors are paired
   Array<double, axis::Row, axis::Factor> errors;         ///< [rows x all errors] errors that were given, SI
   RowLabels labels;                                      ///< labels of the rows; empty if the rows have none
+  std::vector<std::string> zero_errors;  ///< names of the errors without a column in the table; they are zero
   /// [rows] 1: the row is within all limits; 0: it is not. Empty if the study states no limits.
   std::vector<std::uint8_t> within_limits;
   std::vector<std::string> cases;  ///< names of the cases; empty if the errors are rows of a
@@ -84,6 +85,10 @@ GivenErrors evaluated_errors(const StoredResult& result);
 /// Names of the rows of errors, for verdicts: "part 17" if the rows have labels, otherwise "sample 3" if each pose was
 /// solved with all rows. Empty if each row has its own pose and no label.
 std::vector<std::string> row_names(const RowLabels& labels, Pairing pairing, std::size_t rows);
+
+/// "56 of 68 errors have no column and are zero (play_1, play_2 and 54 more); ...", with what draws them. Empty if each
+/// error has a column, or if the errors are those of cases.
+std::string zero_errors_text(const Evaluation& found);
 
 /// Writes the result of `poesy evaluate`, whose poses and errors come from tables; see write_result(). factors: the
 /// errors in the columns of the table.

@@ -15,6 +15,7 @@ namespace poesy {
 namespace {
 
 constexpr const char* kLabels = "/evaluate/label";
+constexpr const char* kZeroErrors = "zero_error";
 constexpr const char* kWithinLimits = "/evaluate/within_limits";
 
 /// The words for Pairing in a result file: how poses and rows of errors are paired.
@@ -188,6 +189,10 @@ void add_errors(ResultBuilder& result, const Evaluation& found, const std::strin
   result.show_axes("/errors", {rows, "factor"});
   result.add("/errors/values", {rows, "factor"}, found.errors.all(),
              {kFactorUnit, "The errors that were given; all others are zero"});
+  if (!found.zero_errors.empty()) {
+    result.add_axis(kZeroErrors, found.zero_errors, {"1", "Errors that have no column in the table and are zero"});
+    result.show_axes("/errors", {kZeroErrors});
+  }
   if (found.labels.names.empty()) return;
   result.add(kLabels, {rows}, found.labels.names, {"1", "What the table of errors calls its rows"});
   result.file().set_attribute(kLabels, "column", found.labels.column);
@@ -436,6 +441,9 @@ void read(const h5::File& file, StoredResult& result) {
   found.errors = decltype(found.errors)({axis_length(file, rows), axis_length(file, "factor")},
                                         read_along<double>(file, "/errors/values", {rows, "factor"}));
   found.labels = read_labels(file, rows);
+  // Files of version 0.2 do not say which errors have no column.
+  const std::string zero_errors = std::string("/") + kZeroErrors;
+  if (!has_cases && file.exists(zero_errors)) found.zero_errors = file.read<std::string>(zero_errors);
   // Files of version 0.2 do not say which rows are within all limits.
   if (result.verdicts && file.exists(kWithinLimits)) {
     found.within_limits = read_along<std::uint8_t>(file, kWithinLimits, {rows});

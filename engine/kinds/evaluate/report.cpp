@@ -305,6 +305,20 @@ StudyWords words(const StoredResult& result) {
   return {.samples = counted(found.cases.size(), "case", "cases")};
 }
 
+/// How sure the outcomes are: as sure as the given errors, if there are no others.
+std::string certainty_text(const Evaluation& found) {
+  if (found.zero_errors.empty()) return "These errors were given, not drawn, so nothing here is up to chance.";
+  return "The errors in the table were given, not drawn. But " + zero_errors_text(found) +
+         ", so real machines may fail more often than these rows.";
+}
+
+/// The method, for a paper: the errors that the table leaves at zero.
+MethodWords method(const StoredResult& result) {
+  const Evaluation& found = evaluation_of(result);
+  if (found.zero_errors.empty()) return {};
+  return {counted(found.zero_errors.size(), "other error was", "other errors were") + " zero."};
+}
+
 /// The summary at the top of the report, for the response by which errors are ranked.
 Answer answer(const StoredResult& result) {
   const Evaluation& found = evaluation_of(result);
@@ -329,7 +343,7 @@ Answer answer(const StoredResult& result) {
                                              response_text(response, all.largest)));
   }
   if (std::string worst = worst_note(result, r); !worst.empty()) lines.emplace_back("Worst", worst + ".");
-  lines.emplace_back("How sure", "These errors were given, not drawn, so nothing here is up to chance.");
+  lines.emplace_back("How sure", certainty_text(found));
   const bool limited = result.verdicts.has_value();
   lines.emplace_back("What to do", !limited ? "State limits under [analysis.limits], and the report judges them."
                                    : result.verdicts->passed()
@@ -400,6 +414,7 @@ Table evaluation_table(const StoredResult& result) {
     if (std::string note = worst_note(result, r); !note.empty()) table.notes.push_back(std::move(note));
   }
   if (std::string note = fail_note(evaluation_of(result)); !note.empty()) table.notes.push_back(std::move(note));
+  if (std::string zero = zero_errors_text(evaluation_of(result)); !zero.empty()) table.notes.push_back(std::move(zero));
   return table;
 }
 
@@ -407,6 +422,7 @@ constinit const ReportKind kEvaluationReport{.tally = tally,
                                              .tables = evaluation_tables,
                                              .merits = merits,
                                              .words = words,
+                                             .method = method,
                                              .answer = answer,
                                              .shown_cells = cells,
                                              .page = add_page,
