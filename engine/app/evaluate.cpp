@@ -249,7 +249,7 @@ Command& add_evaluate(Command& program) {
   CLI::Option* errors = command.add_value(
       "--errors", options.errors, "E.csv",
       "errors, a row is a sample; the first line names the factors, with units or SI; a column \"part\" "
-      "(or name, serial, id, sn, number) names the rows, other columns of text are passed over");
+      "(or name, serial, id, Part No., Teil, ...) names the rows, else the first column of different texts");
   errors->required();
   command
       .add_value(

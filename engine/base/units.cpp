@@ -66,8 +66,12 @@ struct Spelling {
   std::string_view unit;
 };
 
-constexpr std::array<Spelling, 5> kSpellings{
-    {{"\xC2\xB5m", "um"}, {"\xCE\xBCm", "um"}, {"\xC2\xB0", "deg"}, {"\xC2\xB5J", "uJ"}, {"\xCE\xBCJ", "uJ"}}};
+constexpr std::array<Spelling, 6> kSpellings{{{"\xC2\xB5m", "um"},
+                                              {"\xCE\xBCm", "um"},
+                                              {"\xC2\xB0", "deg"},
+                                              {"\xC2\xB5J", "uJ"},
+                                              {"\xCE\xBCJ", "uJ"},
+                                              {"inch", "in"}}};
 
 /// The number as text in a format of std::to_chars.
 template <class... Format>

@@ -39,10 +39,6 @@ double size_of_unit(const CsvCell& cell, const CsvTitle& title, Dimension dimens
 }
 
 void refuse_other_tables(const CsvCell& cell) {
-  if (cell.text.find('"') != std::string_view::npos) {
-    throw InputError(cell.place, "column " + printable(cell.text) + " is in quotes, which poesy does not read",
-                     "save the table without quotes");
-  }
   if (cell.text.starts_with('#')) {
     throw InputError(cell.place, "the column names begin with '#', but tables have no comments",
                      "remove the sign (with numpy.savetxt: comments=\"\")");

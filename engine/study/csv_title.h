@@ -24,8 +24,7 @@ struct CsvTitle {
 /// or is not a unit of this dimension.
 double size_of_unit(const CsvCell& cell, const CsvTitle& title, Dimension dimension);
 
-/// Throws InputError if an unknown title is in quotes, has its unit in parentheses, or begins with the sign of a
-/// comment.
+/// Throws InputError if an unknown title has its unit in parentheses, or begins with the sign of a comment.
 void refuse_other_tables(const CsvCell& cell);
 
 /// Throws InputError if a line does not have this number of cells. columns: the number of columns of the table.

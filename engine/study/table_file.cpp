@@ -52,6 +52,7 @@ struct TableColumn {
   Dimension dimension = Dimension::number;  ///< dimension of the column's numbers
   double si = 1.0;                          ///< factor that converts the column's numbers to SI
   Place place = {};                         ///< place of the title, for a column of text
+  bool may_name_rows = false;               ///< true if people use such a title for names of rows: "Part No."
   bool bare = false;                        ///< true if the title states no unit
 
   /// The title with the unit in which results show this dimension: "z [mm]".
@@ -59,8 +60,25 @@ struct TableColumn {
 };
 
 [[noreturn]] void refuse_unknown(const Place& place, std::string_view name, const KnownColumns& known) {
-  throw InputError(place, fmt::format("column '{}' is not a {} of the model", printable(name), known.what),
-                   suggestion(name, names(known.numbers)));
+  std::string advice = suggestion(name, names(known.numbers));
+  if (!known.labels.empty()) advice += "; or delete it, or call it 'part' if it names the rows";
+  throw InputError(place, fmt::format("column '{}' is not a {} of the model", printable(name), known.what), advice);
+}
+
+/// Returns true for titles that people give to names of rows, such as "Part No.", "part_no" and "Teil".
+bool is_title_of_names(std::string_view title) {
+  constexpr std::array<std::string_view, 20> kTitles{
+      "part no",    "part nr",        "part number", "part id",      "partno",
+      "parts",      "serial no",      "serial nr",   "no",           "nr",
+      "teil",       "teil nr",        "teilenummer", "seriennummer", "machine",
+      "machine no", "machine number", "maschine",    "piece",        "workpiece"};
+  std::string words;
+  for (const char c : lower_case(title)) {
+    const bool is_letter = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    if (is_letter) words += c;
+    if (!is_letter && !words.empty() && words.back() != ' ') words += ' ';
+  }
+  return std::ranges::find(kTitles, trimmed(words)) != kTitles.end();
 }
 
 TableColumn column_of(const CsvCell& cell, const KnownColumns& known) {
@@ -78,8 +96,15 @@ TableColumn column_of(const CsvCell& cell, const KnownColumns& known) {
   if (contains(known.facts, title.name)) return {.role = fact, .name = title.name, .title = cell.text};
   if (contains(known.labels, title.name)) return {.role = label, .name = title.name, .title = cell.text};
   refuse_other_tables(cell);
+  if (title.name.empty()) {
+    throw InputError(cell.place, "this column has no name", "name it, or remove it, or the comma at the ends of lines");
+  }
   if (!known.has_texts) refuse_unknown(cell.place, title.name, known);
-  return {.role = text, .name = title.name, .title = cell.text, .place = cell.place};
+  return {.role = text,
+          .name = title.name,
+          .title = cell.text,
+          .place = cell.place,
+          .may_name_rows = is_title_of_names(title.name)};
 }
 
 /// Reads the first line. The unit of a column may follow the column's name in brackets, "z [mm]"; numbers without a
@@ -176,7 +201,19 @@ struct Rows {
   /// Line of each label; the labels are views of the lines.
   std::map<std::string_view, std::size_t, std::less<>> line_of;
   std::set<std::string_view> texts;  ///< names of the columns of text in which a cell has a letter
+  /// The cells of each column of text, by the column's name.
+  std::map<std::string_view, std::vector<std::string_view>> cells_of_text;
 };
+
+/// Throws InputError if a cell of numbers in the first line below the header has a unit.
+void refuse_line_of_units(const std::vector<CsvCell>& cells, std::span<const TableColumn> columns) {
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    if (columns[k].role != TableColumn::Role::number || find_unit(cells[k].text) == nullptr) continue;
+    throw InputError(
+        cells[k].place, fmt::format("this line has units, such as '{}'", cells[k].text),
+        fmt::format("write them into the first line, '{} [{}]', and remove this line", columns[k].name, cells[k].text));
+  }
+}
 
 double number(const CsvCell& cell, const TableColumn& column) {
   if (const auto value = parse_number(cell.text)) return *value * column.si;
@@ -225,11 +262,15 @@ void read_row(CsvLines& lines, std::span<const TableColumn> columns, const Known
               Rows& rows) {
   const std::vector<CsvCell> cells = lines.next();
   check_cell_count(cells, columns.size());
+  if (rows.values.empty()) refuse_line_of_units(cells, columns);
   std::size_t n = 0;
   for (std::size_t k = 0; k < cells.size(); ++k) {
     if (columns[k].role == TableColumn::Role::label) read_label(cells[k], columns[k], rows);
     if (columns[k].role == TableColumn::Role::text) {
-      if (is_like_a_number(cells[k].text)) refuse_unknown(columns[k].place, columns[k].name, known);
+      if (!columns[k].may_name_rows && is_like_a_number(cells[k].text)) {
+        refuse_unknown(columns[k].place, columns[k].name, known);
+      }
+      rows.cells_of_text[columns[k].name].push_back(cells[k].text);
       if (has_letter(cells[k].text)) rows.texts.insert(columns[k].name);
     }
     if (columns[k].role != TableColumn::Role::number) continue;
@@ -237,6 +278,29 @@ void read_row(CsvLines& lines, std::span<const TableColumn> columns, const Known
     if (check) check(cells[k].place, n, columns[k], rows.values.back());
     ++n;
   }
+}
+
+/// Returns true if these cells may name rows: each one follows label_problem(), and no two are equal.
+bool are_labels(const std::vector<std::string_view>& cells) {
+  const std::set<std::string_view> different(cells.begin(), cells.end());
+  return different.size() == cells.size() &&
+         std::ranges::none_of(cells, [](std::string_view cell) { return label_problem(cell).has_value(); });
+}
+
+/// The labels of the rows of a table. If no column is a column of labels, the first column of text that may name the
+/// rows does so; columns with titles that people use for such names come first. Empty if there is no such column.
+RowLabels labels_of(std::span<const TableColumn> columns, Rows rows) {
+  using Role = TableColumn::Role;
+  const auto label = std::ranges::find(columns, Role::label, &TableColumn::role);
+  if (label != columns.end()) return {std::string(label->name), std::move(rows.labels)};
+  for (const bool by_title : {true, false}) {
+    for (const TableColumn& column : columns) {
+      if (column.role != Role::text || column.may_name_rows != by_title) continue;
+      const std::vector<std::string_view>& cells = rows.cells_of_text[column.name];
+      if (are_labels(cells)) return {"part", {cells.begin(), cells.end()}};
+    }
+  }
+  return {};
 }
 
 /// Reads all lines below the header.
@@ -249,7 +313,8 @@ Rows read_rows(CsvLines& lines, std::span<const TableColumn> columns, const Know
   Rows rows;
   while (!lines.done()) read_row(lines, columns, known, check, rows);
   for (const TableColumn& column : columns) {
-    if (column.role == TableColumn::Role::text && !rows.texts.contains(column.name)) {
+    if (column.role != TableColumn::Role::text || rows.texts.contains(column.name)) continue;
+    if (!column.may_name_rows || !are_labels(rows.cells_of_text[column.name])) {
       refuse_unknown(column.place, column.name, known);
     }
   }
@@ -379,9 +444,8 @@ ErrorTable read_errors(const std::string& path, const Model& model) {
     }
   };
   Rows rows = read_rows(lines, columns, known, check);
-  const auto label = std::ranges::find(columns, TableColumn::Role::label, &TableColumn::role);
-  if (label != columns.end()) table.labels = {std::string(label->name), std::move(rows.labels)};
   table.values = std::move(rows.values);
+  table.labels = labels_of(columns, std::move(rows));
   table.rows = table.values.size() / table.factors.size();
   for (const TableColumn& column : columns) {
     if (column.role == TableColumn::Role::number) table.bare.push_back(column.bare);

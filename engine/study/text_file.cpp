@@ -30,6 +30,28 @@ void refuse_other_formats(const std::string& path, std::string_view text) {
   }
 }
 
+/// The position behind a cell in quotes that begins at `first`. Throws InputError at the place if the quotes are not
+/// closed on this line, or if text follows them.
+std::size_t quoted_end(std::string_view line, std::size_t first, const Place& place) {
+  for (std::size_t at = line.find('"', first + 1); at != std::string_view::npos; at = line.find('"', at + 2)) {
+    if (line.substr(at).starts_with("\"\"")) continue;
+    const std::size_t next = std::min(line.find_first_not_of(" \t", at + 1), line.size());
+    if (next == line.size() || line[next] == ',' || line[next] == ';') return next;
+    break;
+  }
+  throw InputError(place, "this cell begins with a quote, but does not end with one before the next comma or line",
+                   "close the quotes, or remove them");
+}
+
+/// Throws InputError if there is a semicolon at or behind the position `begin` of the line, which begins at `place`.
+void refuse_semicolon(std::string_view line, std::size_t begin, const Place& place) {
+  const std::size_t semicolon = line.find(';', begin);
+  if (semicolon == std::string_view::npos) return;
+  throw InputError({place.file, place.line, semicolon + 1},
+                   "columns are separated by semicolons, but poesy reads commas and decimal points",
+                   "save the table with commas between columns and points in numbers");
+}
+
 }  // namespace
 
 std::string read_text(const std::string& path, std::string_view what, std::size_t most_bytes) {
@@ -65,11 +87,6 @@ std::vector<CsvCell> CsvLines::next() {
   rest_.remove_prefix(std::min(line_end + 1, rest_.size()));
   if (line.ends_with('\r')) line.remove_suffix(1);
   ++line_;
-  if (const std::size_t semicolon = line.find(';'); semicolon != std::string_view::npos) {
-    throw InputError({path_, line_, semicolon + 1},
-                     "columns are separated by semicolons, but poesy reads commas and decimal points",
-                     "save the table with commas between columns and points in numbers");
-  }
   const bool has_tab = trimmed(line).find('\t') != std::string_view::npos;
   if (has_tab && line.find(',') == std::string_view::npos) {
     throw InputError({path_, line_, 1}, "columns are separated by tabs, but poesy reads commas",
@@ -77,13 +94,29 @@ std::vector<CsvCell> CsvLines::next() {
   }
   std::vector<CsvCell> cells;
   for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
+    const std::size_t first = std::min(line.find_first_not_of(" \t", begin), line.size());
+    const bool is_quoted = first < line.size() && line[first] == '"';
+    const std::size_t after = is_quoted ? quoted_end(line, first, {path_, line_, first + 1}) : begin;
+    const std::size_t end = std::min(line.find(',', after), line.size());
+    refuse_semicolon(line.substr(0, end), after, {path_, line_, 1});
     const std::string_view text = trimmed(line.substr(begin, end - begin));
     const auto column = text.empty() ? begin : static_cast<std::size_t>(text.data() - line.data());
-    cells.push_back({text, {path_, line_, column + 1}});
+    cells.push_back({is_quoted ? unquoted(text) : text, {path_, line_, column + 1}});
     begin = end + 1;
   }
   return cells;
+}
+
+std::string_view CsvLines::unquoted(std::string_view cell) {
+  cell = cell.substr(1, cell.size() - 2);
+  if (cell.find('"') == std::string_view::npos) return cell;
+  const auto begin = text_.begin() + (cell.data() - text_.data());
+  auto end = begin;
+  for (std::size_t n = 0; n < cell.size(); ++n) {
+    *end++ = begin[static_cast<std::ptrdiff_t>(n)];
+    if (begin[static_cast<std::ptrdiff_t>(n)] == '"') ++n;  // of two quotes, the second one is left out
+  }
+  return {cell.data(), static_cast<std::size_t>(end - begin)};
 }
 
 }  // namespace poesy

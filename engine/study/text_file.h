@@ -19,7 +19,8 @@ struct CsvCell {
   Place place;            ///< place where the text begins
 };
 
-/// Reads a CSV file line by line. Commas separate the cells. Quotes have no special meaning, and blank lines may only
+/// Reads a CSV file line by line. Commas separate the cells. A cell may be in double quotes as in RFC 4180: commas and
+/// semicolons inside are part of its text, and two quotes inside are one; but it ends on its line. Blank lines may only
 /// be at the end. A byte order mark and line ends of Windows are ignored.
 class CsvLines {
  public:
@@ -31,11 +32,15 @@ class CsvLines {
 
   bool done() const { return rest_.empty(); }                 ///< Returns true if all lines were read.
   Place next_place() const { return {path_, line_ + 1, 1}; }  ///< The place of the next line.
-  /// Reads the next line. Throws InputError for a line with a semicolon, or with tabs and no comma, because these
-  /// separate its columns instead of commas.
+  /// Reads the next line. Throws InputError for a line with a semicolon outside quotes, or with tabs and no comma,
+  /// because these separate its columns instead of commas, and for a quote that is not closed before the next comma or
+  /// the end of the line.
   std::vector<CsvCell> next();
 
  private:
+  /// The text of a cell in quotes, without the quotes. Two quotes inside become one, in text_.
+  std::string_view unquoted(std::string_view cell);
+
   std::string path_;
   std::string text_;
   std::string_view rest_;

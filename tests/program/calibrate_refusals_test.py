@@ -51,7 +51,7 @@ TABLES = [
     (titled("distance [mm]", "sd_z [um]"), "1:44", "column 'to' needs a column 'distance'"),
     ("name,x,y,z\np0,0,0,0\n", "1:1", "no column is measured: deviation_*, actual_*, or distance"),
     (titled("deviation_z", "actual_theta_z"), "1:27", "column 'actual_theta_z' is unknown"),
-    (titled("deviation_z [um]", '"deviation_z"'), "1:27", "is in quotes"),
+    (titled("deviation_z [um]", '"deviation_z'), "1:27", "begins with a quote, but does not end with one"),
     (HEADER.replace(",", "\t") + "\n", "1:1", "separated by tabs"),
     (HEADER.replace(",", ";") + "\n", "1:5", "semicolons"),
     ("", "1:1", "the file is empty"),

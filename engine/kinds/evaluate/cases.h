@@ -82,8 +82,11 @@ inline const Evaluation& evaluation_of(const StoredResult& result) { return foun
 /// The given errors of an evaluation, for `poesy replay`; see Kind::given_errors.
 GivenErrors evaluated_errors(const StoredResult& result);
 
-/// Names of the rows of errors, for verdicts: "part 17" if the rows have labels, otherwise "sample 3" if each pose was
-/// solved with all rows. Empty if each row has its own pose and no label.
+/// The line of a row of errors in its table: the first line has the names of the columns.
+inline std::size_t line_of_row(std::size_t row) { return row + 2; }
+
+/// Names of the rows of errors, for verdicts: "part 17" if the rows have labels, otherwise "line 5 (sample 3)" if each
+/// pose was solved with all rows; samples are counted from 0. Empty if each row has its own pose and no label.
 std::vector<std::string> row_names(const RowLabels& labels, Pairing pairing, std::size_t rows);
 
 /// "56 of 68 errors have no column and are zero (play_1, play_2 and 54 more); ...", with what draws them. Empty if each

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <functional>
 #include <map>
@@ -487,7 +489,8 @@ std::vector<std::string> row_names(const RowLabels& labels, Pairing pairing, std
   std::vector<std::string> names;
   for (const std::string& label : labels.names) names.push_back(labels.column + " " + label);
   if (!names.empty() || pairing == Pairing::row_by_row) return names;
-  for (std::size_t row = 0; row < rows; ++row) names.push_back("sample " + std::to_string(row));
+  for (std::size_t row = 0; row < rows; ++row)
+    names.push_back(fmt::format("line {} (sample {})", line_of_row(row), row));
   return names;
 }
 

@@ -75,18 +75,26 @@ void add_kept(const Evaluation& found, std::vector<FilledColumn>& columns) {
                      [&found](std::size_t row) { return text_cell(found.within_limits[row] == 1 ? "PASS" : "FAIL"); }});
 }
 
-/// The rows that are not within all limits, "fail: SN001, SN007". Empty if there are none, or if rows have no labels.
+/// The rows that are not within all limits, "fail: SN001, SN007"; rows without labels are named by their lines in the
+/// table. Empty if there are none.
 std::string fail_note(const Evaluation& found) {
   constexpr std::size_t kMostNamed = 40;
-  if (found.labels.names.empty()) return {};
+  if (!found.cases.empty()) return {};
+  const bool is_named = !found.labels.names.empty();
   std::vector<std::string> failed;
   for (std::size_t row = 0; row < found.within_limits.size(); ++row) {
-    if (found.within_limits[row] != 1) failed.push_back(found.labels.names[row]);
+    if (found.within_limits[row] == 1) continue;
+    failed.push_back(is_named ? found.labels.names[row] : std::to_string(line_of_row(row)));
   }
   if (failed.empty()) return {};
   const std::size_t named = std::min(failed.size(), kMostNamed);
-  const std::string list = fmt::format("fail: {}", fmt::join(std::span(failed).first(named), ", "));
-  return named == failed.size() ? list : fmt::format("{} and {} more", list, failed.size() - named);
+  std::string list = fmt::format("fail: {}{}",
+                                 is_named             ? ""
+                                 : failed.size() == 1 ? "line "
+                                                      : "lines ",
+                                 fmt::join(std::span(failed).first(named), ", "));
+  if (named < failed.size()) list += fmt::format(" and {} more", failed.size() - named);
+  return is_named ? list : list + " of the table of errors; a column 'part' names its rows";
 }
 
 Table parts_table(const StoredResult& result) {

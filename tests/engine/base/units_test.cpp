@@ -33,12 +33,13 @@ TEST(Units, HaveTheSizesOfTheSi) {
   for (const auto& [text, si] : sizes) EXPECT_DOUBLE_EQ(parse_quantity(text).si, si) << text;
 }
 
-TEST(Units, MayBeSpeltWithTheirSigns) {
+TEST(Units, MayHaveAnotherSpelling) {
   for (const std::string_view micrometre : {"7 \xC2\xB5m", "7 \xCE\xBCm", "7\xC2\xB5m"}) {
     EXPECT_EQ(parse_quantity(micrometre).si, parse_quantity("7 um").si);
     EXPECT_EQ(parse_quantity(micrometre).dimension, Dimension::length);
   }
   EXPECT_EQ(parse_quantity("-0.5\xC2\xB0").si, parse_quantity("-0.5 deg").si);
+  EXPECT_EQ(parse_quantity("2 inch").si, parse_quantity("2 in").si);
   EXPECT_EQ(parse_quantity("-0.5 \xC2\xB0").dimension, Dimension::angle);
   for (const std::string_view microjoule : {"7 \xC2\xB5J", "7 \xCE\xBCJ"}) {
     EXPECT_EQ(parse_quantity(microjoule).si, parse_quantity("7 uJ").si);

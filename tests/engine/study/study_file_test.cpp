@@ -186,7 +186,7 @@ std::string refusal_of_sigma(const std::string& sigma) {
 
 /// Of units that a letter more or less makes another one, none is proposed: 8 dm would become 8 m.
 TEST(ReadStudy, GuessesNoUnitOfAnotherSize) {
-  for (const std::string unit : {"dm", "km", "nm", "pm", "em", "mn", "mmm", "inch", "grad", "x"}) {
+  for (const std::string unit : {"dm", "km", "nm", "pm", "em", "mn", "mmm", "foot", "grad", "x"}) {
     const std::string said = refusal_of_sigma("8 " + unit);
     EXPECT_NE(said.find("unknown unit '" + unit + "'"), std::string::npos) << said;
     EXPECT_EQ(said.find("did you mean"), std::string::npos) << said;
@@ -419,8 +419,8 @@ INSTANTIATE_TEST_SUITE_P(
                  {"unknown unit 'mn'", "(known: m, cm, mm, um, in, mil, thou); write"}},
         BadStudy{"ForeignUnit",
                  "\"1 mm\" }\nangular",
-                 "^\"1 inch\" }\nangular",
-                 {"unknown unit 'inch'", "(known: m, cm, mm, um, in, mil, thou); write"}},
+                 "^\"1 foot\" }\nangular",
+                 {"unknown unit 'foot'", "(known: m, cm, mm, um, in, mil, thou); write"}},
         BadStudy{"NoUnit", "\"1 mm\" }\nangular", "^\"1\" }\nangular", {"'1' has no unit"}},
         BadStudy{
             "NoNumber", "\"1 mm\" }\nangular", "^\"one mm\" }\nangular", {"'one mm'", "write a number and a unit"}},

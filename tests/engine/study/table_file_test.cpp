@@ -121,6 +121,35 @@ TEST(ReadErrors, PassOverTexts) {
   EXPECT_EQ(table.labels.names, (std::vector<std::string>{"17", "18"}));
 }
 
+std::vector<std::string> labels_in(const std::string& text) {
+  const test::TempFolder folder;
+  return read_errors(folder.write("e.csv", text), kMechanism).labels.names;
+}
+
+TEST(ReadErrors, TheColumnThatNamesRowsNeedsNoTitleOfOurs) {
+  const std::vector<std::string> names{"FB-1", "FB-2"};
+  for (const std::string title : {"Part No.", "part_no", "Teil", "Machine", "Prüfling"}) {
+    EXPECT_EQ(labels_in(title + ",delta_1\nFB-1,0\nFB-2,0\n"), names) << title;
+    EXPECT_EQ(labels_in("Inspector," + title + ",delta_1\nX,FB-1,0\nX,FB-2,0\n"), names) << title;
+  }
+  EXPECT_EQ(labels_in("remark,Part No.,delta_1\ngood,7,0\nbad,8,0\n"), (std::vector<std::string>{"7", "8"}));
+  EXPECT_EQ(labels_in("remark,part,delta_1\ngood,7,0\nbad,8,0\n"), (std::vector<std::string>{"7", "8"}));
+}
+
+TEST(ReadErrors, TextsThatDoNotDifferNameNoRows) {
+  EXPECT_TRUE(labels_in("Machine,delta_1\nM1,0\nM1,0\n").empty());
+  EXPECT_TRUE(labels_in("Inspector,delta_1\nX,0\n,0\n").empty());
+}
+
+TEST(ReadErrors, CellsMayBeInQuotes) {
+  const test::TempFolder folder;
+  const std::string text =
+      "\"part\", \"delta_1 [mm]\" ,Inspector\r\n\"17\",\"250\",\"X, Mr.; \"\"Jim\"\"\"\n18, 125 ,Y \"Z\"\n";
+  const ErrorTable table = read_errors(folder.write("e.csv", text), kMechanism);
+  EXPECT_EQ(table.labels.names, (std::vector<std::string>{"17", "18"}));
+  EXPECT_EQ(table.values, (std::vector{0.25, 0.125}));
+}
+
 struct BadTable {
   const char* name;
   std::string text;  ///< the place of the mistake marked with ^
@@ -146,7 +175,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadTable{"Empty", "^", {"empty"}}, BadTable{"OnlyBlank", "^\n \r\n", {"empty"}},
         BadTable{"OnlyByteOrderMark", "^\xEF\xBB\xBF\n", {"empty"}},
         BadTable{"HeaderOnly", "z,beta,gamma\n^", {"no data"}},
-        BadTable{"BlankFirstLine", "^\nz,beta,gamma\n0,0,0\n", {"column ''", "pose coordinate"}},
+        BadTable{"BlankFirstLine", "^\nz,beta,gamma\n0,0,0\n", {"has no name"}},
         BadTable{"MissingColumn", "^z,beta\n0,0\n", {"'gamma' is missing"}},
         BadTable{"ExtraColumn", "z,beta,gamma,^weight\n0,0,0,0\n", {"'weight'", "known: z, beta, gamma"}},
         BadTable{"MisspeltColumn", "z, ^bta,gamma\n0,0,0\n", {"'bta'", "did you mean 'beta'?"}},
@@ -159,10 +188,14 @@ INSTANTIATE_TEST_SUITE_P(
         BadTable{"UnknownUnit", "z,^beta [degree],gamma\n0,0,0\n", {"'beta [degree]'", "rad, mrad, deg"}},
         BadTable{"WrongUnit", "^z [deg],beta,gamma\n0,0,0\n", {"unit of angle", "is a length", "m, cm, mm"}},
         BadTable{"OpenBracket", "^z [mm,beta,gamma\n0,0,0\n", {"'z [mm'", "known: z"}},
-        BadTable{"OnlyAUnit", "z,beta,gamma,^[mm]\n0,0,0,0\n", {"column ''"}},
+        BadTable{"OnlyAUnit", "z,beta,gamma,^[mm]\n0,0,0,0\n", {"has no name"}},
+        BadTable{"TrailingComma", "z,beta,gamma,^\n0,0,0,\n", {"has no name", "the comma at the ends of lines"}},
         BadTable{"RepeatedWithUnit", "z,beta,gamma,^z [mm]\n0,0,0,0\n", {"'z'", "second time"}},
         BadTable{"LabelOfPoses", "^part,z,beta,gamma\n1,0,0,0\n", {"'part'"}},
-        BadTable{"Quotes", "^\"z\",\"beta\",\"gamma\"\n0,0,0\n", {"is in quotes", "without quotes"}},
+        BadTable{"OpenQuote", "z,^\"beta,gamma\n0,0,0\n", {"begins with a quote", "close the quotes"}},
+        BadTable{"TextBehindQuotes", "^\"z\"a,beta,gamma\n0,0,0\n", {"begins with a quote"}},
+        BadTable{"QuotedSemicolons", "\"z\"^;\"beta\";\"gamma\"\n0;0;0\n", {"separated by semicolons"}},
+        BadTable{"LineOfUnits", "z,beta,gamma\n^mm,deg,deg\n0,0,0\n", {"units, such as 'mm'", "'z [mm]'", "remove"}},
         BadTable{"Tabs", "^z\tbeta\tgamma\n0\t0\t0\n", {"separated by tabs", "with commas"}},
         BadTable{"Word", "z,beta,gamma\n0,0,0\n0, ^left,0\n", {"'left'", "'beta'", "not a finite number"}},
         BadTable{"NotANumber", "z,beta,gamma\n0,^nan,0\n", {"'nan'", "not a finite number"}},
@@ -241,7 +274,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadTable{"RepeatedLabel", "part,delta_1\n17,0\n18,0\n^17,0\n", {"part '17'", "second time, after line 2"}},
         BadTable{"EmptyLabel", "part,delta_1\n^,0\n", {"is empty", "at most 60"}},
         BadTable{"Formula", "delta_1,name\n0,^=1+1|cmd\n", {"'=1+1|cmd'", "begins with '='"}},
-        BadTable{"QuotedLabel", "part,delta_1\n^\"17\",0\n", {"has a quote"}}),
+        BadTable{"QuoteInLabel", "part,delta_1\n^\"1\"\"7\",0\n", {"has a quote"}},
+        BadTable{"UnitsBelowLabels", "part,delta_1\n,^mm\n17,0\n", {"units, such as 'mm'", "'delta_1 [mm]'"}},
+        BadTable{"Dates", "part,^date,delta_1\na,2026-03-01,0\n", {"'date'", "or delete it, or call it 'part'"}},
+        BadTable{"NumbersThatNameNothing",
+                 "^Part No.,delta_1\n17,0\n17,0\n",
+                 {"'Part No.'", "or delete it, or call it 'part'"}}),
     kName);
 
 struct BadLabel {
