@@ -305,9 +305,40 @@ std::vector<std::string> uncovered_directions(const Mechanism& mechanism) {
   return list;
 }
 
+namespace {
+
+/// The distance (m) at home between the two joints or bodies that a feature's part connects, along the feature's x
+/// axis.
+double length_along(const Mechanism& mechanism, std::size_t feature) {
+  const Limb& limb = mechanism.limbs[mechanism.features[feature].limb - 1];
+  const std::size_t frame = mechanism.features[feature].frame;
+  const Transform& link = limb.home[frame];
+  const bool is_of_end = frame == limb.joints.size();  // the axes are then those of the body at the end of the limb
+  const Vector3 between = is_of_end ? Vector3(link.R.transpose() * link.p) : link.p;
+  return std::abs(mechanism.feature_places[feature].R.col(0).dot(between));
+}
+
+/// A clause about a nominal size that is far from the distance in the geometry; empty if it is near, or if the part has
+/// no extent in this direction.
+std::string doubtful_size(const Mechanism& mechanism, std::size_t f) {
+  constexpr double kFar = 2.0;
+  constexpr double kNoExtent = 1e-3;  // as a share of the reach
+  const Feature& feature = mechanism.features[f];
+  if (feature.kind != FeatureKind::distance || feature.size[0] == 0.0) return {};
+  const double length = length_along(mechanism, f);
+  const double ratio = feature.size[0] / length;
+  if (length < kNoExtent * mechanism.reach || (1.0 / kFar <= ratio && ratio <= kFar)) return {};
+  return fmt::format("{} has nominal_size = {}, but its part is {} long in this direction", feature.label,
+                     length_text(feature.size[0]), length_text(length));
+}
+
+}  // namespace
+
 std::vector<std::string> doubtful_zones(const Mechanism& mechanism) {
   std::vector<std::string> list;
-  for (const Feature& feature : mechanism.features) {
+  for (std::size_t f = 0; f < mechanism.features.size(); ++f) {
+    const Feature& feature = mechanism.features[f];
+    if (std::string size = doubtful_size(mechanism, f); !size.empty()) add_new(list, std::move(size));
     for (const std::optional<Zone>& zone : {feature.location, feature.orientation}) {
       const bool needs_datums = zone && zone->key != "tolerance" && zone->key != "flatness";
       if (needs_datums && zone->datums.empty()) {

@@ -41,13 +41,20 @@ std::pair<double, double> read_bounds(const StudyValue& value, Dimension dimensi
                "write the smaller bound first");
 }
 
-void read_range(const StudyValue& value, const StudySection&, Dimension dimension, AllocatedPart& part) {
-  std::tie(part.lo, part.hi) = read_bounds(value, dimension);
+/// The block of a part, and what its keys mean.
+struct PartBlock {
+  const StudySection& block;
+  Dimension dimension;  ///< dimension of the part's tolerance
+  const ModelDescription& model;
+};
+
+void read_range(const StudyValue& value, const PartBlock& of, AllocatedPart& part) {
+  std::tie(part.lo, part.hi) = read_bounds(value, of.dimension);
 }
 
-void read_values(const StudyValue& value, const StudySection&, Dimension dimension, AllocatedPart& part) {
+void read_values(const StudyValue& value, const PartBlock& of, AllocatedPart& part) {
   for (const StudyValue& one : value.list()) {
-    const double tolerance = one.positive_quantity(dimension);
+    const double tolerance = one.positive_quantity(of.dimension);
     if (!part.values.empty() && tolerance <= part.values.back()) {
       one.fail("is '" + printable(one.text()) + "', not above the one before it", "write them in ascending order");
     }
@@ -56,15 +63,47 @@ void read_values(const StudyValue& value, const StudySection&, Dimension dimensi
   if (part.values.empty()) value.fail("is empty", "write the tolerances that can be had, or leave it out");
 }
 
-void read_nominal_size(const StudyValue& grades, const StudySection& block, AllocatedPart& part) {
-  const auto size = block.find("nominal_size");
-  if (!size) grades.fail("is set, but nominal_size is missing", "write the size of the part, e.g. \"50 mm\"");
-  part.nominal_size = size->positive_quantity(Dimension::length);
-  if (it_grade_width(part.nominal_size, ItGrade::it7)) return;
-  size->fail("is '" + printable(size->text()) + "', for which ISO 286-1 has no grades", "its sizes end at 3150 mm");
+std::string size_text(double size) { return readable_text({size, Dimension::length}, 9); }
+
+/// A distance of the drawing whose error the part has, and whose size is known. Throws InputError if the part has two
+/// such distances of different sizes. Null if it has none.
+const Feature* sized_distance(const StudyValue& grades, const AllocatedPart& part, const ModelDescription& model) {
+  const Feature* found = nullptr;
+  for (const Feature& feature : model.features) {
+    const bool is_sized = feature.kind == FeatureKind::distance && feature.size[0] > 0.0;
+    if (!is_sized || std::ranges::find(part.factors, feature.middle.front()) == part.factors.end()) continue;
+    if (found != nullptr && found->size[0] != feature.size[0]) {
+      grades.fail(fmt::format("is set, but '{}' is {} and '{}' is {} on the drawing", found->name,
+                              size_text(found->size[0]), feature.name, size_text(feature.size[0])),
+                  "a grade has another width for each size; make them separate parts");
+    }
+    found = &feature;
+  }
+  return found;
 }
 
-void read_grades(const StudyValue& value, const StudySection& block, Dimension dimension, AllocatedPart& part) {
+/// Reads the size of the part, which its distance on the drawing may state.
+void read_nominal_size(const StudyValue& grades, const PartBlock& of, AllocatedPart& part) {
+  constexpr double kSame = 1e-9;  // of two sizes that differ by rounding, as a share
+  const Feature* const own = sized_distance(grades, part, of.model);
+  const auto size = of.block.find("nominal_size");
+  if (!size && own == nullptr) {
+    grades.fail("is set, but nominal_size is missing", "write the size of the part, e.g. \"50 mm\"");
+  }
+  part.nominal_size = size ? size->positive_quantity(Dimension::length) : own->size[0];
+  if (own != nullptr && std::abs(part.nominal_size - own->size[0]) > kSame * own->size[0]) {
+    size->fail(fmt::format("is '{}', but '{}' is {} in the mechanism's file", printable(size->text()), own->name,
+                           size_text(own->size[0])),
+               "leave it out, so that each distance has its own size");
+  }
+  if (it_grade_width(part.nominal_size, ItGrade::it7)) return;
+  (size ? *size : grades)
+      .fail(fmt::format("{} '{}', for which ISO 286-1 has no grades", size ? "is" : "is set for a size of",
+                        size ? printable(size->text()) : size_text(part.nominal_size)),
+            "its sizes end at 3150 mm");
+}
+
+void read_grades(const StudyValue& value, const PartBlock& of, AllocatedPart& part) {
   std::vector<std::string> known;
   for (int grade = 0; grade <= static_cast<int>(ItGrade::it18); ++grade) {
     known.push_back(it_grade_name(ItGrade{grade}));
@@ -72,10 +111,10 @@ void read_grades(const StudyValue& value, const StudySection& block, Dimension d
   const std::vector<std::string_view> words(known.begin(), known.end());
   const std::vector<StudyValue> list = value.list();
   if (list.empty()) value.fail("is empty", "name grades, e.g. [\"IT6\", \"IT7\"], or leave it out");
-  if (dimension != Dimension::length) {
+  if (of.dimension != Dimension::length) {
     value.fail("is set, but the part's errors are angles", "ISO 286-1 has grades of lengths; write values instead");
   }
-  read_nominal_size(value, block, part);
+  read_nominal_size(value, of, part);
   for (const StudyValue& one : list) {
     const ItGrade grade{static_cast<int>(one.word(words))};
     if (!part.grades.empty() && grade <= part.grades.back()) {
@@ -90,30 +129,30 @@ void read_grades(const StudyValue& value, const StudySection& block, Dimension d
   }
 }
 
-void read_processes(const StudyValue& value, const StudySection&, Dimension dimension, AllocatedPart& part) {
+void read_processes(const StudyValue& value, const PartBlock& of, AllocatedPart& part) {
   for (const StudyValue& one : value.list()) {
     const StudySection section = one.section();
     section.allow();
     StatedProcess process;
     process.name = read_name(section, names(part.processes), std::to_string(part.processes.size() + 1));
-    process.cost = read_cost(section.require("cost"), dimension);
+    process.cost = read_cost(section.require("cost"), of.dimension);
     if (const auto bounds = section.find("bounds")) {
-      std::tie(process.lo, process.hi) = read_bounds(*bounds, dimension);
+      std::tie(process.lo, process.hi) = read_bounds(*bounds, of.dimension);
     }
     part.processes.push_back(std::move(process));
   }
   if (part.processes.empty()) value.fail("is empty", "name a process with its cost, or leave it out");
 }
 
-void read_fixed(const StudyValue& value, const StudySection&, Dimension dimension, AllocatedPart& part) {
-  part.lo = value.positive_quantity(dimension);
+void read_fixed(const StudyValue& value, const PartBlock& of, AllocatedPart& part) {
+  part.lo = value.positive_quantity(of.dimension);
 }
 
 /// A key of a study file that states which tolerances a part may have.
 struct ChoiceKey {
   std::string_view name;
   PartChoice choice;
-  void (*read)(const StudyValue& value, const StudySection& block, Dimension dimension, AllocatedPart& part);
+  void (*read)(const StudyValue& value, const PartBlock& of, AllocatedPart& part);
 };
 
 constexpr std::array<ChoiceKey, 5> kChoiceKeys{{{"bounds", PartChoice::range, read_range},
@@ -140,13 +179,14 @@ void read_round(const StudySection& block, Dimension dimension, AllocatedPart& p
   for (const StatedProcess& process : part.processes) check_rounding(*value, process.lo, process.hi, *part.round);
 }
 
-/// Reads the cost and the possible tolerances of the parts of a block, whose errors have this dimension.
-void read_choice(const StudySection& block, Dimension dimension, AllocatedPart& part) {
+/// Reads the cost and the possible tolerances of a part.
+void read_choice(const PartBlock& of, AllocatedPart& part) {
+  const auto& [block, dimension, model] = of;
   std::optional<StudyValue> chosen;
   for (const ChoiceKey& key : kChoiceKeys) {
     const auto value = block.find(key.name);
     if (!value) continue;
-    key.read(*value, block, dimension, part);
+    key.read(*value, of, part);
     if (chosen) {
       value->fail("is set, and so is " + chosen->full_name(),
                   "write one of bounds, values, grades, processes and tolerance");
@@ -233,7 +273,7 @@ std::vector<AllocatedPart> read_zone_block(const StudySection& block, const Stud
   std::vector<AllocatedPart> parts = read_zones(block, study, taken);
   for (AllocatedPart& part : parts) {
     part.shift = read_shift(block);
-    read_choice(block, Dimension::length, part);
+    read_choice({block, Dimension::length, study.model()}, part);
   }
   return parts;
 }
@@ -355,7 +395,9 @@ StudyTable parts_table() {
           {.name = "nominal_size",
            .type = "length",
            .bounds = "greater than 0",
-           .meaning = "With grades, and required there: the part's size, up to 3150 mm."},
+           .meaning =
+               "With grades: the part's size, up to 3150 mm. A distance of the drawing has its own nominal_size, "
+               "which is taken; otherwise it is required."},
           {.name = "processes",
            .type = "list of tables",
            .meaning = "Ways to make the part, one of which is chosen, instead of cost."},
@@ -421,7 +463,7 @@ std::vector<AllocatedPart> read_part_block(const StudySection& block, const Stud
     part.factors = errors;
     part.sigmas = sigmas_of(block, usual_sigmas, part.name);
     part.shift = read_shift(block);
-    read_choice(block, dimension_of(part, model), part);
+    read_choice({block, dimension_of(part, model), model}, part);
     parts.push_back(std::move(part));
   }
   return parts;

@@ -57,6 +57,21 @@ TEST(DrawingGaps, GrowByWhatAFeatureSaid) {
   EXPECT_EQ(uncovered_directions(read(without("hinge_b"))), more);
 }
 
+TEST(DrawingGaps, ASizeFarFromTheLengthOfItsPartIsDoubtful) {
+  const auto doubts = [](const std::string& size) {
+    return doubtful_zones(read(replaced(
+        text_of(kName), {"tolerance = \"0.02 mm\" },\n  { name = \"rod_bore\"",
+                         "nominal_size = \"" + size + "\", tolerance = \"0.02 mm\" },\n  { name = \"rod_bore\""})));
+  };
+  const Clauses before = doubtful_zones(from_file(kName));
+  for (const std::string size : {"340 mm", "171 mm", "679 mm"}) EXPECT_EQ(doubts(size), before) << size;
+  for (const std::string size : {"34 mm", "169 mm", "681 mm"}) {
+    const Clauses found = doubts(size);
+    const std::string told = "rod has nominal_size = " + size + ", but its part is 340 mm long in this direction";
+    EXPECT_NE(std::ranges::find(found, told), found.end()) << size;
+  }
+}
+
 /// A feature without a zone has no tolerance, and an error that the file states has one.
 TEST(DrawingGaps, AreWithoutZonesAndStatedErrors) {
   const std::string rod = "direction = [\"r - R\", 0, \"-h\"], tolerance = \"0.02 mm\"";

@@ -285,6 +285,37 @@ TEST(ZoneParts, MayAllGrowByOneFactor) {
   EXPECT_NEAR(rms, worst, 1e-8 * worst);
 }
 
+/// The drawing with this nominal size of its rods.
+const Catalog& catalog_with_size() {
+  static const Catalog only = [] {
+    std::ostringstream text;
+    text << std::ifstream(POESY_TEST_DATA "/mechanisms/linear-delta-drawing.toml").rdbuf();
+    std::string sized = text.str();
+    sized.insert(sized.find("tolerance", sized.find("\"rod\"")), "nominal_size = \"340 mm\", ");
+    return Catalog{file::catalog_entry(sized, "linear-delta-drawing.toml")};
+  }();
+  return only;
+}
+
+const std::string kRods = "[[analysis.parts]]\nzones = [\"rod.tolerance\"]\n" + kCost + kAlike;
+
+TEST(ZoneGrades, AreThoseOfTheSizeOnTheDrawing) {
+  const std::string grades = kRods + "grades = [\"IT5\", \"IT6\"]\n";
+  for (const std::string size : {"", "nominal_size = \"340 mm\"\n"}) {
+    const auto parts =
+        parts_of(study_of_text(study_text(grades + size), "study.toml", catalog_with_size(), StudyUse::run));
+    ASSERT_EQ(parts.size(), 1u);
+    EXPECT_DOUBLE_EQ(parts[0].nominal_size, 0.34);
+  }
+  const test::Marked bad(study_text(grades + "nominal_size = ^\"905 mm\"\n"));
+  test::expect_input_error([&] { study_of_text(bad.text, "study.toml", catalog_with_size(), StudyUse::run); },
+                           {"study.toml", bad.line, bad.column},
+                           {"'905 mm', but 'rod_1' is 340 mm in the mechanism's file", "leave it out"});
+  const test::Marked missing(study_text(kRods + "grades = ^[\"IT6\"]\n"));
+  test::expect_input_error([&] { study_of_text(missing.text, "study.toml", catalog(), StudyUse::run); },
+                           {"study.toml", missing.line, missing.column}, {"nominal_size is missing"});
+}
+
 struct WrongZones {
   const char* name;
   std::string parts;  ///< '^' before what is wrong
