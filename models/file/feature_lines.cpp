@@ -38,6 +38,41 @@ void check_signs(std::string_view key, const StudyValue& value) {
   }
 }
 
+constexpr std::string_view kDigits = "0123456789";
+
+/// Returns true if the text is a tolerance of two limits, such as "+0.05 -0.02 mm" or "0 / -0.05 mm".
+bool has_two_limits(std::string_view text) {
+  constexpr std::string_view kSigns = "+-";
+  const std::size_t first = text.find_first_not_of(' ');
+  if (first == std::string_view::npos) return false;
+  const std::size_t digits = kSigns.find(text[first]) == std::string_view::npos ? first : first + 1;
+  const std::size_t end = std::min(text.find_first_not_of("0123456789.", digits), text.size());
+  const std::size_t next = std::min(text.find_first_not_of(" /", end), text.size());
+  if (end == digits || next + 1 >= text.size()) return false;
+  if (kSigns.find(text[next]) != std::string_view::npos && text.find_first_of(kDigits, next + 1) == next + 1)
+    return true;
+  return digits > first && text.find_first_of(kSigns, end) != std::string_view::npos;
+}
+
+/// Returns true if the text is a grade of ISO 286, such as "IT7", or a size with its zone, such as "905 js7".
+bool is_zone_of_iso_286(std::string_view text) {
+  const std::string_view last = text.substr(text.find_last_of(' ') + 1);
+  const std::size_t digits = last.find_first_of(kDigits);
+  if (digits == 0 || digits > 2 || last.find_first_not_of(kDigits, digits) != std::string_view::npos) return false;
+  return last.starts_with("IT") || (last.size() < text.size() && text.find_first_of(kDigits) == 0);
+}
+
+/// Throws if the tolerance of a distance is written as limits or as a zone of ISO 286.
+void check_distance(const StudyValue& value) {
+  const std::string text = value.is_text() ? std::string(trimmed(value.text())) : std::string();
+  if (!value.is_list() && !has_two_limits(text) && !is_zone_of_iso_286(text)) return;
+  value.fail(
+      fmt::format("{}, but the tolerance of a distance is one length, +- half the width of its zone",
+                  value.is_list() ? "is a list" : "is '" + printable(text) + "'"),
+      "write half the width, e.g. \"0.035 mm\" for -0.02 mm and 0.05 mm, and in the study what is not symmetric: "
+      "errors.override.ERROR = { distribution = \"normal\", limits = [\"-0.02 mm\", \"0.05 mm\"] }, or a mean");
+}
+
 /// The content of a zone's table, as written.
 struct WrittenZone {
   std::optional<Expression> size;
@@ -59,10 +94,13 @@ const Keys<WrittenZone, Nothing>& zone_keys() {
 void read_zone(std::string_view key, const StudyValue& value, FeatureLines& feature) {
   WrittenZone written;
   if (value.is_section()) {
-    if (const auto zone = value.section().find("zone")) check_signs(key, *zone);
+    const auto zone = value.section().find("zone");
+    if (zone) check_signs(key, *zone);
+    if (zone && key == "tolerance") check_distance(*zone);
     read_keys(zone_keys(), value.section(), written, Nothing{});
   } else {
     check_signs(key, value);
+    if (key == "tolerance") check_distance(value);
     written.size = expression(value);
   }
   check_modifiers(value, written.size->text);

@@ -19,6 +19,11 @@ using nlohmann::json;
 
 constexpr const char* kName = "linear-delta-drawing";
 
+const std::string kHalfWidth =
+    ", but the tolerance of a distance is one length, +- half the width of its zone; write half the width, e.g. "
+    "\"0.035 mm\" for -0.02 mm and 0.05 mm, and in the study what is not symmetric: errors.override.ERROR = { "
+    "distribution = \"normal\", limits = [\"-0.02 mm\", \"0.05 mm\"] }, or a mean";
+
 const json& expected() {
   static const json all = json::parse(std::ifstream(POESY_TEST_DATA "/drawing.json"));
   return all["linear_delta"];
@@ -224,6 +229,16 @@ TEST(Features, AreRefusedWithPlaceAndRemedy) {
           {"direction = \"z\", tolerance = \"0.02 mm\"", "direction = \"z\", tolerance = \"\u00b10.02 mm\"",
            "m.toml:20:81: limb[0].features[2].tolerance is '\u00b10.02 mm', with the sign \u00b1; write the number and "
            "its unit alone: tolerance = \"0.02 mm\" of a distance is +-0.02 mm"},
+          {"tolerance = \"0.02 mm\"", "tolerance = [\"-0.02 mm\", \"0.05 mm\"]",
+           "m.toml:20:81: limb[0].features[2].tolerance is a list" + kHalfWidth},
+          {"tolerance = \"0.02 mm\"", "tolerance = \"+0.05 -0.02 mm\"",
+           "m.toml:20:81: limb[0].features[2].tolerance is '+0.05 -0.02 mm'" + kHalfWidth},
+          {"tolerance = \"0.02 mm\"", "tolerance = \"0 / -0.05 mm\"",
+           "m.toml:20:81: limb[0].features[2].tolerance is '0 / -0.05 mm'" + kHalfWidth},
+          {"tolerance = \"0.02 mm\"", "tolerance = \"905 js7\"",
+           "m.toml:20:81: limb[0].features[2].tolerance is '905 js7'" + kHalfWidth},
+          {"tolerance = \"0.02 mm\"", "tolerance = { zone = \"IT7\" }",
+           "m.toml:20:90: limb[0].features[2].tolerance.zone is 'IT7'" + kHalfWidth},
           {"position = { zone = \"0.05 mm\"", "position = { zone = \"general\"",
            "m.toml:19:112: limb[0].features[1].position.zone is \"general\", but ISO 2768-2 never held for position, "
            "coaxiality, angularity, profile and total run-out; write the length that is meant, because nothing is "
