@@ -3,6 +3,7 @@ cannot be reached, what is not certified, and what is refused."""
 
 import csv
 import json
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -224,6 +225,20 @@ class Allocation(ResumptionTest):
         self.assertIn("# valid: ", self.succeeds("check", "study.toml"))
         held = SMALL.replace('factors = "linear"', 'factors = ["delta_1_0_y"]').replace("0.5 mm", "0.01 mm")
         self.refused(held, "the background and the errors of no part alone give", "list them as parts")
+
+    def test_machines_that_errors_in_no_part_reject(self):
+        """No tolerance helps where other errors alone reject too many machines, although their root mean square is small."""
+        held = SMALL.replace('factors = "linear"', 'factors = ["delta_1_0_y"]')
+        self.assertNotEqual(held, SMALL)
+        self.write("study.toml", held.replace("0.5 mm", "0.01 mm"))
+        for _ in range(20):
+            said = self.poesy("run", "study.toml", "-o", "out.h5").stderr.decode()
+            alone = re.search(r"give a root mean square of ([\d.]+) mm", said)
+            if alone is None:
+                break
+            self.write("study.toml", held.replace("0.5 mm", f"{1.1 * float(alone[1])} mm"))
+        self.assertRegex(said, r"cannot be reached: errors that are in no part alone reject \d+ of 2500 machines \(\w+")
+        self.assertIn("no tolerance of a part can help", said)
 
     def test_not_certified(self):
         fewest = SMALL.replace("samples = 2500", f"samples = {FEWEST}")

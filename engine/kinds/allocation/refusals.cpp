@@ -10,6 +10,7 @@
 #include "engine/base/units.h"
 #include "engine/kinds/allocation/relative_limits.h"
 #include "engine/kinds/allocation/search_stages.h"
+#include "engine/report/display.h"
 #include "engine/study/limit_keys.h"
 
 namespace poesy::allocation {
@@ -34,6 +35,36 @@ std::string finer_parts(const SearchProblem& problem) {
   const bool has_steps =
       std::ranges::any_of(problem.programme.parts(), [](const AllocatedPart& part) { return part.round.has_value(); });
   return std::string("lower the bounds of parts") + (has_steps ? ", or round to finer steps" : "");
+}
+
+/// The names of the errors that vary and are in no part.
+std::vector<std::string> errors_in_no_part(const SearchProblem& problem) {
+  std::vector<std::string> names;
+  for (const FactorIndex error : problem.run.study.analysis.factors) {
+    const bool is_in_part = std::ranges::any_of(problem.programme.parts(), [&](const AllocatedPart& part) {
+      return std::ranges::find(part.factors, error) != part.factors.end();
+    });
+    if (!is_in_part) names.push_back(problem.run.study.model().factors[error.value].name);
+  }
+  return names;
+}
+
+/// Refuses a study if too many machines are rejected although all their parts are perfect.
+void refuse_others_alone(const SearchProblem& problem) {
+  constexpr std::size_t kMostNamed = 5;
+  const std::vector<std::string> others = errors_in_no_part(problem);
+  if (others.empty()) return;
+  const std::vector<double> perfect(problem.programme.size(), 0.0);
+  const std::uint64_t rejects = rejects_of(loads_of(problem, problem.run.study.seed, perfect));
+  if (rejects <= problem.allowed.design) return;
+  throw InputError(
+      {},
+      fmt::format("{} % of the machines within the limits cannot be reached: {}errors that are in no part alone reject "
+                  "{} of {} machines ({}), and {} may be rejected",
+                  100.0 * problem.options.yield, problem.calibration ? "the noise of the calibration and " : "",
+                  rejects, problem.run.study.analysis.samples, some_names(others, kMostNamed), problem.allowed.design),
+      "no tolerance of a part can help; widen a limit, ask for a smaller yield, make these errors smaller (a play by "
+      "a closer fit), or list them as parts");
 }
 
 }  // namespace
@@ -89,6 +120,7 @@ void refuse_infeasible(const SearchProblem& problem, const Infeasible& infeasibl
 }
 
 void refuse_lowest(const SearchProblem& problem, std::uint64_t rejects) {
+  refuse_others_alone(problem);
   throw InputError(
       {},
       fmt::format(

@@ -145,7 +145,7 @@ Probed round_down(const SearchProblem& problem, Probed from, StageLog& log);
 void refuse_perfect_beyond(const SearchProblem& problem);
 [[noreturn]] void refuse_infeasible(const SearchProblem& problem, const Infeasible& infeasible);
 [[noreturn]] void refuse_unbounded(const SearchProblem& problem, const Unbounded& unbounded);
-/// Refuses a study if the lowest tolerances have too many rejects.
+/// Refuses a study if the lowest tolerances have too many rejects. The message differs if perfect parts have too many.
 [[noreturn]] void refuse_lowest(const SearchProblem& problem, std::uint64_t rejects);
 /// Refuses a study in which only the lowest tolerances keep the limits and some of them are 0, so that parts would have
 /// to be perfect. rejects: number of rejects at the smallest tolerances tried before.
