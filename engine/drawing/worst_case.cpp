@@ -268,8 +268,8 @@ Extreme extreme(const Feature& feature, const OfErrors& slopes) {
   return found;
 }
 
-ZoneSquares zone_squares(const Feature& feature, const ZoneScatter& scatter, const OfErrors& squares) {
-  const FeatureSigmas sigma = scatter_sigmas(feature, scatter);
+ZoneSquares zone_squares(const Feature& feature, const ZoneScatter& scatter, const FeatureSigmas& sigma,
+                         const OfErrors& squares) {
   const double middle = sum_of(squares, 0, feature.middle.size());
   const double tilt = sum_of(squares, feature.middle.size(), feature.tilt.size());
   const auto square = [](double value) { return value * value; };

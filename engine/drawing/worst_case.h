@@ -32,9 +32,11 @@ struct ZoneSquares {
   double worst;
 };
 
-/// The mean squares of a feature's effect under this scatter. squares: for each error of the feature, the sum of
+/// The mean squares of a feature's effect under this scatter. sigmas: scatter_sigmas() of both. Callers compute it
+/// once, because it integrates numerically for inspected features. squares: for each error of the feature, the sum of
 /// squared slopes over the components of a response.
-ZoneSquares zone_squares(const Feature& feature, const ZoneScatter& scatter, const OfErrors& squares);
+ZoneSquares zone_squares(const Feature& feature, const ZoneScatter& scatter, const FeatureSigmas& sigmas,
+                         const OfErrors& squares);
 
 /// The largest length of a sum of vectors, to which each feature contributes one vector.
 struct LargestLength {

@@ -9,6 +9,7 @@
 
 #include "engine/base/nan.h"
 #include "engine/drawing/worst_case.h"
+#include "engine/drawing/zone_moments.h"
 #include "engine/drawing/zone_scatter.h"
 #include "engine/study/study_kind.h"
 
@@ -209,7 +210,19 @@ struct OverPoses {
 struct FeatureScatter {
   drawing::ZoneScatter in_zones;
   std::vector<OfErrors> own;  ///< [features] see own_variances()
+  /// [features] Standard deviations of the errors as the zones state them; empty members for a feature with variances
+  /// of its own.
+  std::vector<drawing::FeatureSigmas> sigmas;
 };
+
+FeatureScatter scatter_of(const Study& study, const std::vector<Feature>& features) {
+  FeatureScatter scatter{study.errors.zones.value_or(drawing::ZoneScatter()), own_variances(study, features), {}};
+  for (std::size_t q = 0; q < features.size(); ++q) {
+    scatter.sigmas.push_back(scatter.own[q].empty() ? drawing::scatter_sigmas(features[q], scatter.in_zones)
+                                                    : drawing::FeatureSigmas());
+  }
+  return scatter;
+}
 
 /// Adds the effects at pose m to the sums of response r, and sets the result at this pose. slopes:
 /// [features][components of the response].
@@ -223,9 +236,9 @@ void add_pose(const std::vector<Feature>& features, const FeatureScatter& scatte
     for (const OfErrors& component : slopes[q]) {
       for (std::size_t e = 0; e < squares.size(); ++e) squares[e] += component[e] * component[e];
     }
-    const drawing::ZoneSquares found = scatter.own[q].empty()
-                                           ? drawing::zone_squares(features[q], scatter.in_zones, squares)
-                                           : own_squares(scatter.own[q], squares);
+    const drawing::ZoneSquares found =
+        scatter.own[q].empty() ? drawing::zone_squares(features[q], scatter.in_zones, scatter.sigmas[q], squares)
+                               : own_squares(scatter.own[q], squares);
     sums.squares[q] += found.even;
     even += found.even;
     worst += found.worst;
@@ -260,7 +273,7 @@ std::optional<DrawingResult> drawing_result(const StudyRun& run) {
   if (features.empty()) return std::nullopt;
   const ModelDescription& model = study.model();
   DrawingResult result = described(run, features);
-  const FeatureScatter scatter{study.errors.zones.value_or(drawing::ZoneScatter()), own_variances(study, features)};
+  const FeatureScatter scatter = scatter_of(study, features);
   Slopes slopes(run, features);
   std::vector<OverPoses> sums(model.responses.size(), {std::vector<double>(features.size(), 0.0)});
   std::vector<std::vector<std::size_t>> signed_ones;

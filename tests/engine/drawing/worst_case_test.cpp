@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 
+#include "engine/drawing/zone_moments.h"
 #include "engine/drawing/zone_scatter.h"
 
 // Closed values of tests/data/drawing.json, by another program, and random points of zones.
@@ -113,15 +114,20 @@ TEST(WorstCase, OfADistanceAndAnOrientationAlone) {
   EXPECT_NEAR(extreme(feature(FeatureKind::round, {}, 0.5), {9.0, 3.0, -4.0}).value, 1.25, 1e-15);
 }
 
+ZoneSquares squares_of(const Feature& feature, const OfErrors& squares) {
+  const ZoneScatter scatter{.sigmas = 3.0};
+  return zone_squares(feature, scatter, scatter_sigmas(feature, scatter), squares);
+}
+
 /// The worst division of a zone is never below the even one; where the middle alone acts it is twice it.
 TEST(WorstCase, DividesAZoneAtWorstByOneUseAlone) {
   const Feature axis = feature(FeatureKind::axis, 1.0, {});
-  EXPECT_NEAR(zone_squares(axis, {.sigmas = 3.0}, {1.0, 1.0, 0.0, 0.0}).worst, 2.0 / 36.0, 1e-16);
-  EXPECT_NEAR(zone_squares(axis, {.sigmas = 3.0}, {1.0, 1.0, 0.0, 0.0}).even, 1.0 / 36.0, 1e-16);
-  EXPECT_NEAR(zone_squares(axis, {.sigmas = 3.0}, {0.0, 0.0, 1.0, 1.0}).worst, 8.0 / 36.0, 1e-16);
+  EXPECT_NEAR(squares_of(axis, {1.0, 1.0, 0.0, 0.0}).worst, 2.0 / 36.0, 1e-16);
+  EXPECT_NEAR(squares_of(axis, {1.0, 1.0, 0.0, 0.0}).even, 1.0 / 36.0, 1e-16);
+  EXPECT_NEAR(squares_of(axis, {0.0, 0.0, 1.0, 1.0}).worst, 8.0 / 36.0, 1e-16);
   const Feature oriented = feature(FeatureKind::axis, 1.0, 0.4);
-  EXPECT_NEAR(zone_squares(oriented, {.sigmas = 3.0}, {1.0, 1.0, 0.0, 0.0}).worst, 2.0 * 0.84 / 36.0, 1e-16);
-  EXPECT_NEAR(zone_squares(oriented, {.sigmas = 3.0}, {0.0, 0.0, 1.0, 1.0}).worst, 2.0 * 0.16 / 9.0, 1e-16);
+  EXPECT_NEAR(squares_of(oriented, {1.0, 1.0, 0.0, 0.0}).worst, 2.0 * 0.84 / 36.0, 1e-16);
+  EXPECT_NEAR(squares_of(oriented, {0.0, 0.0, 1.0, 1.0}).worst, 2.0 * 0.16 / 9.0, 1e-16);
 }
 
 /// A length is the largest over directions: of discs it is the sum of their radii.
