@@ -128,6 +128,20 @@ void read_prior(const StudyValue& value, CalibrationTable& table, const Calibrat
   }
 }
 
+/// Throws InputError if the element names a position, such as tip_x, that the mechanism reports but that is no
+/// coordinate of its poses. known: all coordinates that a controller may command.
+void refuse_position(const StudyValue& element, const ModelDescription& model,
+                     const std::vector<std::string_view>& known) {
+  const std::string word = element.text();
+  const auto response = std::ranges::find(model.responses, word, &Response::name);
+  const bool is_position =
+      response != model.responses.end() && response->dimension == Dimension::length && !response->is_magnitude();
+  if (!is_position || std::ranges::find(known, word) != known.end()) return;
+  element.fail(fmt::format("is '{}', but the coordinates of this mechanism are {}", word, fmt::join(known, ", ")),
+               "use x, y, z as coordinates of the platform in the mechanism's file, so that a controller can command a "
+               "position");
+}
+
 void read_coordinates(const StudyValue& value, CalibrationTable& table, const CalibrationReading& at) {
   const ModelDescription& model = at.study.model();
   table.coordinates_place = value.place();
@@ -139,6 +153,7 @@ void read_coordinates(const StudyValue& value, CalibrationTable& table, const Ca
     }
   }
   for (const StudyValue& element : value.list()) {
+    refuse_position(element, model, known);
     const std::string word(known[element.word(known)]);
     if (std::ranges::find(table.coordinates, word) != table.coordinates.end()) {
       element.fail("names '" + word + "' a second time", "remove one of them");
@@ -291,7 +306,8 @@ std::vector<CalibrationRow> calibration_rows() {
           .name = "coordinates",
           .value = {.type = "list of texts"},
           .usual = "the platform's coordinates",
-          .meaning = "What the controller commands: other coordinates of a pose, such as tip_x, tip_y, tip_z.",
+          .meaning = "What the controller commands: other coordinates of a pose, such as tip_x, tip_y, tip_z, which "
+                     "a mechanism with a tool has if the coordinates of its platform are x, y, z.",
           .reader = read_coordinates},
       CalibrationRow{.name = "motors",
                      .value = {.type = "list of lists of texts"},

@@ -181,6 +181,15 @@ class Refusals(ProgramTest):
         self.assertIn("4 motors and 3 commanded coordinates; say which drives move together (motors), or what else is "
                       "commanded (coordinates)", said)
 
+    def test_position_that_is_no_coordinate(self):
+        """A mechanism whose poses are angles and one length does not command the position of its tool."""
+        self.write("lift-table.toml", (FILES.parent / "mechanisms" / "lift-table.toml").read_text())
+        study = STUDY.replace("delta-puu", "lift-table").replace(FIT, 'fit = ["leg_1"]\ncoordinates = ["tip_x", "tip_y", "tip_z"]')
+        said = self.refused(study, "z [mm],rx,ry,deviation_z [um]\n600,0,0,1\n650,0,0,2\n")
+        self.assertIn("study.toml:8:16: ", said)
+        self.assertIn("is 'tip_x', but the coordinates of this mechanism are z, rx, ry", said)
+        self.assertIn("use x, y, z as coordinates of the platform in the mechanism's file", said)
+
     def test_lengths_and_angles_without_noise(self):
         study = STUDY.replace(NOISE, "noise = { z = 0, theta_x = 0 }")
         said = self.refused(study, "x,y,z,deviation_z [um],deviation_theta_x [mrad]\n" + "".join(
