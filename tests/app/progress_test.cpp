@@ -48,7 +48,7 @@ TEST(PlainLine, NamesTheDesignOfASweep) {
   fourth.design = 4;
   fourth.designs = 10;
   EXPECT_EQ(plain_line(fourth),
-            "design 4 of 10: 43.2 % done, 7.1 k samples/s, 12 not converged (0.0028 %), 15 min 30 s left");
+            "design 4 of 10: 43.2 % done, 7.1 k samples/s, 12 not converged (0.0028 %), 15 min left");
   fourth.stage = 2;
   EXPECT_TRUE(plain_line(fourth).starts_with("design 4 of 10, stage 2: 43.2 % done"));
 }
