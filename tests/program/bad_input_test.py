@@ -190,8 +190,9 @@ class BadInput(ProgramTest):
 
     def test_sweeps_of_geometry(self):
         self.write("s.toml", STUDY)
-        for wrong, said in (("geometry.l_A=60:80:10", "has no unit; write it once, after the last number: geometry.l_A=60:80:10mm\n"),
-                            ("geometry.l_A=60,70", "write it once, after the last number: geometry.l_A=60,70mm\n"),
+        for wrong, said in (("geometry.l_A=60:80:10",
+                             "has no unit; write it once, after the last number: geometry.l_A=60:80:10mm, or geometry.l_A=60:80:10m\n"),
+                            ("geometry.l_A=60,70", "after the last number: geometry.l_A=60,70mm, or geometry.l_A=60,70m\n"),
                             ("l_A=60:80:10mm", "names a parameter of the mechanism's geometry; write geometry.l_A=60:80:10mm\n")):
             self.assertIn(said, self.said_of("sweep", "s.toml", "--set", wrong))
 
