@@ -31,7 +31,7 @@ BAD_STUDIES = {
     "unknown_key": (changed("count = 6", "count = 6\ncolour = 1"), "7:1", ["colour"]),
     "unknown_model": (changed('"2upr-rpu"', '"2upr-rpx"'), "4:", ["2upr-rpx", "2upr-rpu"]),
     "unknown_factor": (changed('"delta_1_1_y"', '"delta_9_1_y"'), "12:", ["delta_9_1_y"]),
-    "unknown_unit": (changed('"1 mm" }\nangular', '"1 inch" }\nangular'), "8:", ["inch", "mm"]),
+    "unknown_unit": (changed('"1 mm" }\nangular', '"1 foot" }\nangular'), "8:", ["foot", "mm"]),
     "bare_number": (changed('sigma = "1 mm" }\n', "sigma = 1 }\n"), "8:", ["unit"]),
     "negative_sigma": (changed('"0.2 deg"', '"-0.2 deg"'), "9:", ["sigma"]),
     "zero_sigma": (changed('"0.2 deg"', '"0 deg"'), "9:", ["sigma"]),

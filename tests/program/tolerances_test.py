@@ -246,7 +246,7 @@ class Tolerances(ProgramTest):
     def test_limits_that_cannot_be(self):
         result = self.result()
         for limit, words in {"0 mm": ["not above zero"], "-1 mm": ["not above zero"], "1 deg": ["length", "mm"],
-                             "0.05": ["no unit", "mm"], "0.05 inch": ["inch", "mm"], "much": ["much"], "": ["--limit"]}.items():
+                             "0.05": ["no unit", "mm"], "0.05 foot": ["foot", "mm"], "much": ["much"], "": ["--limit"]}.items():
             with self.subTest(limit):
                 self.refuses(result, "--response", RESPONSE, f"--limit={limit}", words=words)
 
