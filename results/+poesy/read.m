@@ -5,7 +5,8 @@ function result = read(source)
 %                                      MATLAB follows links into other files; `poesy verify` refuses a file that has any
 %   result = poesy.read('tables')      the folder that `poesy export study.h5 -d tables` wrote
 %
-% result.kind is 'sensitivity', 'identification', 'evaluate', 'monte-carlo', 'sobol', 'allocation' or 'coupling'.
+% result.kind is 'sensitivity', 'identification', 'evaluate', 'monte-carlo', 'sobol', 'allocation', 'coupling', 'sweep' or
+% 'calibration'.
 %
 % result.ranked, the same in MATLAB and Octave, is what poesy.ranking sorts and poesy.plot draws. Of N rows and R columns:
 %   what                       what the numbers are, in words
@@ -14,7 +15,9 @@ function result = read(source)
 %   value, low, high           [N x R]  numbers, and their intervals; NaN where there is none
 % A sensitivity study has index x sigma, a Monte Carlo study S1 (where it has first-order indices), a Sobol' study ST, an
 % allocation each part's share of the cost, a coupling the largest effect over the poses, an identification what each error
-% gives alone (SI), and an evaluation the largest magnitude over the poses (from tables also of what is beside responses).
+% gives alone (SI), a sweep the figures of merit of each design in the units of poesy show, a calibration each estimate's
+% magnitude over its standard deviation, and an evaluation the largest magnitude over the poses (from tables also of what is
+% beside responses).
 %
 % All numbers are there too, in SI. Read from tables, result.tables.NAME for each NAME.csv:
 %   columns, units             {C x 1}  names of the columns, and their units ('1' for none)

@@ -125,6 +125,52 @@ function check_kind(kind)
   end
 end
 
+% Figures of merit of the designs of a sweep.
+function check_sweep()
+  study = regexprep(fileread(small_study('monte-carlo')), '^draws = .*$', 'draws = "per machine"', 'lineanchors', ...
+                    'dotexceptnewline');
+  write('machines.toml', [study "\n[analysis.limits]\nlinear_deformation = \"0.2 mm\"\n"]);
+  program('sweep', 'machines.toml', '--set', '"errors.linear.sigma=1,2,3mm"', '-o', 'sweep.h5', '--quiet');
+  result = poesy.read('sweep.h5');
+  result.file = 'sweep.h5';
+  assert(result.kind, 'sweep');
+  assert(result.ranked.names, {'sigma = 1 mm'; 'sigma = 2 mm'; 'sigma = 3 mm'});
+  assert(result.ranked.responses{1}, 'yield');
+  assert(result.ranked.units{1}, '%');
+  check_tables(result);
+  check_ranking(result);
+  check_figure(result);
+  check_against_table(result, 'yield', 'sweep', 'yield', 1);
+  ranked = poesy.ranking(result, 'yield');
+  assert(all(ranked.low <= ranked.value & ranked.value <= ranked.high));
+end
+
+% The fitted errors of a calibration.
+function check_calibration(data)
+  copyfile(fullfile(data, 'delta-*'), '.');
+  program('calibrate', 'delta-measured.toml', '--measured', 'delta-heights.csv', '-o', 'calibration.h5');
+  result = poesy.read('calibration.h5');
+  result.file = 'calibration.h5';
+  assert(result.kind, 'calibration');
+  check_tables(result);
+  check_ranking(result);
+  check_figure(result);
+  fitted = result.tables.estimates;
+  assert(result.ranked.names, fitted.rows);
+  number = @(name) fitted.values(:, strcmp(fitted.columns, name));
+  assert(result.ranked.value, abs(number('estimate')) ./ number('sd'), -1e-14);
+end
+
+% An error without effect has the effect 0 and the interval 0 to 0, as poesy show prints it.
+function check_no_effect()
+  index = [7.9e-14 1; 3 2];
+  indices = poesy.internal.indices({'a'; 'b'}, {'m'; 'm'}, [1e-4; 1e-4], {'gap'; 'position'}, {'m'; 'm'}, index, 0.9 * index, ...
+                                   1.1 * index);
+  found = poesy.internal.effects(indices);
+  assert([found.value(1, 1), found.low(1, 1), found.high(1, 1)], [0 0 0]);
+  assert(found.value(2, 1), 3e-4, -1e-14);
+end
+
 % The gap of a planar mechanism: what its indices say is the rounding of solves.
 function check_what_does_not_vary()
   index = [1e-13 1; 3e-13 2];
@@ -174,6 +220,9 @@ cd(folder);
 for kind = {'sensitivity', 'identification', 'evaluate', 'monte-carlo', 'sobol', 'allocation', 'coupling'}
   check_kind(kind{1});
 end
+check_sweep();
+check_calibration(fullfile(argv(){1}, 'tests', 'data', 'calibration'));
+check_no_effect();
 check_what_does_not_vary();
 check_limits();
 check_errors();

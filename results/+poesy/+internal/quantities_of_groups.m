@@ -25,6 +25,13 @@ function found = quantities_of_groups(result)
                      'value', groups.identification.single_max);
     case 'evaluate'
       found = outcomes(groups);
+    case 'sweep'
+      sweep = groups.sweep;
+      found = struct('names', {designs(sweep)}, 'responses', {sweep.quantity}, 'units', {sweep.quantity_unit}, ...
+                     'value', sweep.merit, 'low', sweep.low, 'high', sweep.high);
+    case 'calibration'
+      fit = groups.calibration;
+      found = struct('names', {fit.fitted}, 'responses', {{'all'}}, 'units', {{'1'}}, 'value', abs(fit.estimate(:)) ./ fit.sd(:));
   end
 end
 
@@ -66,4 +73,14 @@ function found = outcomes(groups)
   found.units = groups.responses.unit;
   each = @(name) reshape(max(abs(outcome.(name)), [], along), [], 1);
   found.value = cell2mat(cellfun(each, found.responses(:)', 'UniformOutput', false));
+end
+
+% Names of designs as the tables have them: "R = 100 mm, L = 200 mm".
+function names = designs(sweep)
+  keys = regexprep(sweep.key(:), '^.*\.', '');
+  alike = cellfun(@(key) sum(strcmp(keys, key)) > 1, keys);
+  keys(alike) = sweep.key(alike);
+  values = reshape(sweep.value, numel(keys), []);
+  each = @(d) strjoin(cellfun(@(key, value) [key ' = ' value], keys, values(:, d), 'UniformOutput', false)', ', ');
+  names = arrayfun(each, (1:size(values, 2))', 'UniformOutput', false);
 end

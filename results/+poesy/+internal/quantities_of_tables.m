@@ -20,6 +20,12 @@ function found = quantities_of_tables(result)
                      'value', tables.single_max.values(:, 2:end));
     case 'evaluate'
       found = outcomes(tables);
+    case 'sweep'
+      found = merits(tables.sweep);
+    case 'calibration'
+      fitted = tables.estimates;
+      found = struct('names', {fitted.rows}, 'responses', {{'all'}}, 'units', {{'1'}}, ...
+                     'value', abs(column(fitted, 'estimate')) ./ column(fitted, 'sd'));
   end
 end
 
@@ -52,6 +58,15 @@ function found = subsets(summary)
   found = struct('names', {summary.rows(1:end / sizes)}, 'sizes', sizes, ...
                  'responses', {regexprep(summary.columns(at), '_effect_max$', '')}, 'units', {summary.units(at)}, ...
                  'value', summary.values(:, at));
+end
+
+% A line for each design: figures of merit with intervals, in units that people read.
+function found = merits(designs)
+  names = regexprep(designs.columns(~cellfun(@isempty, regexp(designs.columns, ' change low$'))), ' change low$', '');
+  each = @(ending) cell2mat(cellfun(@(name) column(designs, [name ending]), names', 'UniformOutput', false));
+  units = cellfun(@(name) designs.units(strcmp(designs.columns, name)), names);
+  found = struct('names', {designs.rows}, 'responses', {names}, 'units', {units}, 'value', each(''), 'low', each(' low'), ...
+                 'high', each(' high'));
 end
 
 % A line for each pose and row of errors: case by case, else pose by pose. Rows may be paired with poses one by one.

@@ -19,6 +19,10 @@ function table = ranked(kind, found)
       found.names = repeated(found.names(:), found.sizes);
     case 'identification'
       what = 'largest deformation by the error alone, SI';
+    case 'sweep'
+      what = 'figure of merit of the design';
+    case 'calibration'
+      what = 'estimate over its standard deviation';
     case 'evaluate'  % row: what a row of errors without a name is called
       what = 'largest magnitude over the poses';
       if isempty(found.names)
