@@ -38,6 +38,7 @@ class Figures(FolderTest):
         found = machine.to_xarray("calibration")
         drawn = sorted(float(y) for line in axes.lines if line.get_marker() in ("o", "x") for y in line.get_ydata())
         np.testing.assert_array_equal(drawn, sorted(found["standardised"].values))
+        self.assertIn("limit of outliers", [text.get_text() for text in axes.get_legend().get_texts()])
 
     def test_labels_stay_within_the_figure_and_legends_outside_the_axes(self):
         swept = poesy.sweep(STUDIES["machines"], {"geometry.l_A": ["60 mm", "70 mm"], "analysis.samples": ["100", "200", "300"]})
@@ -57,13 +58,15 @@ class Figures(FolderTest):
         ranked = found.ranking("angular_deformation")[:15]
         self.assertEqual([text.get_text() for text in axes.get_yticklabels()], [row.name for row in ranked])
         np.testing.assert_array_equal([bar.get_width() for bar in axes.patches], [row.effect for row in ranked])
+        ends = [line.get_xdata() for line in axes.lines if line.get_marker() == "|"]  # seen where intervals are short
+        np.testing.assert_array_equal(ends, [[row.effect_low for row in ranked], [row.effect_high for row in ranked]])
 
     def test_the_axis_says_how_many_are_left_out(self):
         found = result("sensitivity")
         ranked = len(found.ranking().rows)
         self.assertGreater(ranked, 15)
-        label = " ".join(poesy.figure(found).axes[0].get_xlabel().split())
-        self.assertTrue(label.endswith(f": the first 15 of {ranked}"), label)
+        label = poesy.figure(found).axes[0].get_xlabel()
+        self.assertTrue(label.endswith(f"the first 15 of {ranked}"), label)  # in one line
 
     def test_widths(self):
         for size, expected in (("85mm", 85.0), ("170 mm", 170.0), ("8.5 cm", 85.0), (100, 100.0), ("4in", 101.6)):

@@ -96,7 +96,7 @@ def _fit_texts(drawn: Figure) -> None:
     """Breaks labels that are longer than the figure, and puts the legend above the axes, where it hides nothing."""
     width, height = (_INCH * inches for inches in drawn.get_size_inches())
     for axes in drawn.axes:
-        axes.set_xlabel(textwrap.fill(axes.get_xlabel(), int((width - _BESIDE) / _CHARACTER)))
+        axes.set_xlabel(textwrap.fill(axes.get_xlabel(), int((width - _BESIDE) / _CHARACTER)).replace("\u00a0", " "))
         axes.set_ylabel(textwrap.fill(axes.get_ylabel(), int((height - _BESIDE / 2) / _CHARACTER)))
     axes = drawn.axes[0]
     if axes.get_legend() is not None:
@@ -145,7 +145,8 @@ def _drawing(result: Result, response: str | None) -> tuple[Callable[[Axes], obj
     def ranking(axes: Axes) -> None:
         plot.ranking(response, top=_MOST_BARS, ax=axes)
         if ranked > _MOST_BARS:
-            axes.set_xlabel(f"{axes.get_xlabel()}: the first {_MOST_BARS} of {ranked}")
+            # Blanks at which lines do not break; _fit_texts() makes them usual ones.
+            axes.set_xlabel(f"{axes.get_xlabel()}: the\u00a0first\u00a0{_MOST_BARS}\u00a0of\u00a0{ranked}")
 
     return ranking, (lambda _: 14.0 + 4.2 * min(ranked, _MOST_BARS))
 
@@ -162,8 +163,8 @@ def _residuals(result: Result, axes: Axes) -> None:
     axes.plot(numbers[~outliers], values[~outliers], "o", markersize=3, label="measured")
     if outliers.any():
         axes.plot(numbers[outliers], values[outliers], "x", markersize=4, label="outlier")
-        axes.legend()
-    for side in (-1.0, 1.0):
-        axes.axhline(side * float(found["outlier_limit"]), linestyle=":", color="black", linewidth=0.6)
+    for side, label in ((-1.0, None), (1.0, "limit of outliers")):
+        axes.axhline(side * float(found["outlier_limit"]), linestyle=":", color="black", linewidth=0.6, label=label)
+    axes.legend()
     axes.set_xlabel("number of the measured value")
     axes.set_ylabel(labelled("standardised residual", ""))

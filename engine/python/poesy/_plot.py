@@ -69,6 +69,8 @@ class Plots:
         low, high = ([getattr(row, f"{ranked.value}_{end}", None) for row in ranked] for end in ("low", "high"))
         if None not in low:
             axes.hlines(at, low, high, color=_LINE)
+            for ends in (low, high):  # marks show an interval that is too short to be seen
+                axes.plot(ends, at, "|", color=_LINE, markersize=4)
         axes.set_yticks(at, [row.name for row in ranked])
         axes.invert_yaxis()
         axes.margins(y=0.01)
