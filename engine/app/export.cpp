@@ -16,6 +16,7 @@
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/base/units.h"
 #include "engine/kinds/registry.h"
 #include "engine/kinds/result_file.h"
 #include "engine/report/display.h"
@@ -34,7 +35,22 @@ struct ExportOptions {
   bool latex = false;
   std::string response;
   std::optional<std::size_t> top;
+  std::string size = "85mm";
 };
+
+constexpr double kNarrowest = 40.0;  ///< width of a table in mm
+constexpr double kWidest = 400.0;    ///< width of a table in mm
+
+/// Reads the width of tables, and returns it in mm.
+double width_of(const std::string& size) {
+  try {
+    const double width = parse_quantity(size, Dimension::length).si * 1e3;
+    if (width >= kNarrowest && width <= kWidest) return width;
+  } catch (const QuantityError&) {  // refused below
+  }
+  throw InputError({}, fmt::format("the size of a table is '{}'", printable(size)),
+                   fmt::format("give its width, {} to {} mm, e.g. 85mm or 170mm", kNarrowest, kWidest));
+}
 
 /// Adds to tables of a result that was solved to first order a note on this, as far as they do not say it.
 void add_first_order_notes(const StoredResult& result, std::vector<Table>& tables) {
@@ -79,11 +95,12 @@ std::string first_files_text(const StoredResult& result, const std::vector<std::
 }
 
 int export_result(const ExportOptions& options) {
+  const double width = width_of(options.size);
   StoredResult result = read_result_with_warning(options.result);
   std::vector<std::string> files;
   if (options.latex) {
     const std::vector<Table> tables = printed_tables(options, result);
-    files = write_latex(result, tables, options.folder);
+    files = write_latex(result, tables, options.folder, width);
   } else {
     files = export_tables(result, options.folder);
     if (files.size() > kManyFiles) say(Message::note, first_files_text(result, files));
@@ -117,10 +134,15 @@ Command& add_export(Command& program) {
   command
       .add_whole_number("--top", options.top, "N", "only the first N errors of a table that ranks them", 1, kMostNumber)
       ->needs(latex);
+  command
+      .add_value("--size", options.size, "WIDTH",
+                 "width of the tables; default: 85mm, one column of a journal; 170mm are two")
+      ->needs(latex);
   command.examples = {{"tables/global.csv and others", "poesy export result.h5 -d tables"},
                       {"tables/ranking.tex and others", "poesy export result.h5 -d tables --latex"},
                       {"the ten errors that matter most to one response",
-                       "poesy export result.h5 -d tables --latex --top 10 --response gap"}};
+                       "poesy export result.h5 -d tables --latex --top 10 --response gap"},
+                      {"tables as wide as a page", "poesy export result.h5 -d tables --latex --size 170mm"}};
   return command;
 }
 

@@ -1,16 +1,16 @@
 #include "engine/report/latex.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <optional>
-#include <utility>
+#include <cstddef>
+#include <string_view>
 
 #include "engine/base/text.h"
-#include "engine/base/units.h"
-#include "engine/model/feature.h"
 #include "engine/report/display.h"
+#include "engine/report/latex_columns.h"
+#include "engine/report/latex_text.h"
 #include "engine/storage/file_writer.h"
 #include "engine/storage/output_folder.h"
 
@@ -18,153 +18,7 @@ namespace poesy {
 namespace {
 
 constexpr std::size_t kMostRowsOfAPage = 40;
-/// The largest number of columns that fit on a page. Tables with more columns leave out those that are dispensable.
-constexpr std::size_t kMostColumns = 9;
-constexpr std::size_t kColumnWidth = 56;  ///< characters of \footnotesize in a line of a column of a journal (85 mm)
-constexpr std::size_t kColumnGap = 1;     ///< characters between two columns of a table
-constexpr std::size_t kFewColumns = 6;    ///< tables with at most this many columns are printed in the size of the text
-
-std::string_view escaped(char c) {
-  switch (c) {
-    case '\\':
-      return "\\textbackslash{}";
-    case '~':
-      return "\\textasciitilde{}";
-    case '^':
-      return "\\textasciicircum{}";
-    case '<':
-      return "\\textless{}";
-    case '>':
-      return "\\textgreater{}";
-    case '|':
-      return "\\textbar{}";
-    case '"':
-      return "\\char34{}";  // \textquotedbl needs another font encoding
-    case '&':
-      return "\\&";
-    case '%':
-      return "\\%";
-    case '$':
-      return "\\$";
-    case '#':
-      return "\\#";
-    case '_':
-      return "\\_";
-    case '{':
-      return "\\{";
-    case '}':
-      return "\\}";
-    default:
-      return {};
-  }
-}
-
-/// A sign beyond ASCII, and its code in LaTeX.
-struct Sign {
-  std::string_view sign;   ///< UTF-8
-  std::string_view latex;  ///< LaTeX code of the sign, for pdflatex without further packages
-};
-
-constexpr std::array kSigns{Sign{"\u00b1", "$\\pm$"},     Sign{"\u2300", "\\O{}"},       Sign{"\u00b0", "$^\\circ$"},
-                            Sign{"\u00b5", "$\\mu$"},     Sign{"\u00d7", "$\\times$"},   Sign{"\u00b7", "$\\cdot$"},
-                            Sign{"\u00b2", "$^2$"},       Sign{"\u00b3", "$^3$"},        Sign{"\u2212", "$-$"},
-                            Sign{"\u2013", "--"},         Sign{"\u2014", "---"},         Sign{"\u2018", "`"},
-                            Sign{"\u2019", "'"},          Sign{"\u201c", "``"},          Sign{"\u201d", "''"},
-                            Sign{"\u2026", "\\ldots{}"},  Sign{"\u00a0", "~"},           Sign{"\u202f", "\\,"},
-                            Sign{"\u2264", "$\\leq$"},    Sign{"\u2265", "$\\geq$"},     Sign{"\u221e", "$\\infty$"},
-                            Sign{"\u03b1", "$\\alpha$"},  Sign{"\u03b2", "$\\beta$"},    Sign{"\u03b3", "$\\gamma$"},
-                            Sign{"\u03b4", "$\\delta$"},  Sign{"\u03b5", "$\\epsilon$"}, Sign{"\u03b8", "$\\theta$"},
-                            Sign{"\u03bb", "$\\lambda$"}, Sign{"\u03bc", "$\\mu$"},      Sign{"\u03c0", "$\\pi$"},
-                            Sign{"\u03c3", "$\\sigma$"},  Sign{"\u03c6", "$\\phi$"},     Sign{"\u03c8", "$\\psi$"},
-                            Sign{"\u03c9", "$\\omega$"},  Sign{"\u0394", "$\\Delta$"}};
-
-/// A character beyond ASCII. A letter of Latin alphabets stays unchanged, because LaTeX reads UTF-8. A sign becomes its
-/// command, and a sign of a drawing becomes its word. All others become "?", because pdflatex refuses them.
-std::string beyond_ascii(std::string_view character) {
-  const auto known = std::ranges::find(kSigns, character, &Sign::sign);
-  if (known != kSigns.end()) return std::string(known->latex);
-  const auto zone = std::ranges::find(zone_traits(), character, &ZoneTraits::sign);
-  if (zone != zone_traits().end()) return latex_text(zone->key);
-  const bool is_latin = character >= std::string_view("\u00c0") && character <= std::string_view("\u017f");
-  return is_latin ? std::string(character) : "?";
-}
-
-/// A unit in upright letters: "N\,m", "$\mu$m".
-std::string latex_unit(const std::string& unit) {
-  std::string text;
-  for (const char c : unit) text += c == ' ' ? "\\," : escaped(c).empty() ? std::string(1, c) : std::string(escaped(c));
-  const bool is_micro = text.size() > 1 && text[0] == 'u' && (text[1] == 'm' || text[1] == 'J');
-  return is_micro ? "$\\mu$" + text.substr(1) : text;
-}
-
-/// A number such as "-1.2e-05" in LaTeX's mathematics mode; none if the text is not a number. Groups of digits may be
-/// separated by blanks.
-std::optional<std::string> latex_number(const std::string& text) {
-  std::string digits = text;
-  std::erase(digits, ' ');
-  const std::string bare = digits.starts_with('+') ? digits.substr(1) : digits;
-  if (!parse_number(bare)) return std::nullopt;
-  const std::size_t e = digits.find_first_of("eE");
-  if (e != std::string::npos) {
-    const std::string power = std::to_string(std::stoi(digits.substr(e + 1)));
-    return "$" + digits.substr(0, e) + "\\times10^{" + power + "}$";
-  }
-  std::string grouped;
-  for (const char c : text) grouped += c == ' ' ? "\\," : std::string(1, c);
-  return "$" + grouped + "$";
-}
-
-std::string latex_cell(const Cell& cell, Column::Kind kind) {
-  if (cell.text == "-") return "--";
-  if (kind == Column::Kind::text) return latex_text(cell.text);
-  if (cell.text == "inf" || cell.text == "-inf") return cell.text.front() == '-' ? "$-\\infty$" : "$\\infty$";
-  return latex_number(cell.text).value_or(latex_text(cell.text));
-}
-
-std::string_view heading_of(const Column& column) { return column.heading.empty() ? column.name : column.heading; }
-
-/// The characters in the widest line of a table.
-std::size_t width_of(const Table& table) {
-  std::size_t width = 0;
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    const Column& column = table.columns[c];
-    std::size_t widest = text_width(heading_of(column)) + (column.unit.empty() ? 0 : text_width(column.unit) + 3);
-    for (const std::vector<Cell>& row : table.rows) widest = std::max(widest, text_width(row[c].text));
-    width += widest + (c == 0 ? 0 : kColumnGap);
-  }
-  return width;
-}
-
-template <class Keep>
-Table with_columns(const Table& table, const Keep& keep) {
-  Table made = table;
-  for (std::size_t c = table.columns.size(); c-- > 0;) {
-    if (keep(c)) continue;
-    const auto at = static_cast<std::ptrdiff_t>(c);
-    made.columns.erase(made.columns.begin() + at);
-    for (std::vector<Cell>& row : made.rows) row.erase(row.begin() + at);
-  }
-  return made;
-}
-
-/// The table without its most dispensable group of columns. Precondition: it has dispensable columns.
-Table without_a_group(const Table& table) {
-  const int last = std::ranges::max(table.columns, {}, &Column::dispensable).dispensable;
-  return with_columns(table, [&](std::size_t c) { return table.columns[c].dispensable < last; });
-}
-
-bool has_dispensable(const Table& table) {
-  return std::ranges::any_of(table.columns, [](const Column& column) { return column.dispensable > 0; });
-}
-
-/// The table without dispensable columns, the most dispensable first, until it fits in a column of a journal. If it
-/// does not fit even without all of them, it has all columns that fit on a page.
-Table fitted(const Table& table) {
-  Table narrow = table;
-  while (width_of(narrow) > kColumnWidth && has_dispensable(narrow)) narrow = without_a_group(narrow);
-  if (width_of(narrow) <= kColumnWidth || table.columns.size() > kMostColumns) return narrow;
-  return table;
-}
+constexpr double kJournalColumn = 85.0;  ///< width in mm above which a table spans two columns of a journal
 
 /// Returns true if all names of a list "low, high" are among these.
 bool are_all_among(std::string_view list, std::span<const std::string> these) {
@@ -220,25 +74,29 @@ void even_digits(Table& table, std::size_t c) {
   }
 }
 
-/// The table as a paper prints it: its columns, notes on these, and even digits.
-Table printed(const Table& table) {
-  Table made = fitted(table);
-  if (table.columns.size() > kMostColumns) {
-    made = with_columns(made, [&, with_all = made](std::size_t c) {
-      return std::ranges::any_of(with_all.rows, [c](const std::vector<Cell>& row) { return row[c].text != "-"; });
-    });
-  }
-  std::vector<std::string> left_out;
-  for (const Column& column : table.columns) {
-    if (std::ranges::find(made.columns, heading_of(column), heading_of) == made.columns.end()) {
-      left_out.emplace_back(heading_of(column));
+/// The headings of the columns that only the first of two tables has.
+std::vector<std::string> missing_headings(const Table& whole, const Table& part) {
+  std::vector<std::string> missing;
+  for (const Column& column : whole.columns) {
+    if (std::ranges::find(part.columns, column.name, &Column::name) == part.columns.end()) {
+      missing.emplace_back(heading_of(column));
     }
   }
-  for (std::string& note : made.notes) note = note_of(note, left_out);
-  std::erase(made.notes, "");
-  for (std::size_t c = 0; c < made.columns.size(); ++c) {
-    if (made.columns[c].kind == Column::Kind::number) even_digits(made, c);
+  return missing;
+}
+
+/// The table as a paper prints it: even digits, the columns that fit, and notes on these.
+Table printed(Table table, double millimetres) {
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    if (table.columns[c].kind == Column::Kind::number) even_digits(table, c);
   }
+  Table made = fitted(table, millimetres);
+  std::vector<std::string> missing = missing_headings(table, made);
+  std::erase_if(missing, [&](const std::string& heading) {
+    return std::ranges::find(made.columns, heading, heading_of) != made.columns.end();
+  });
+  for (std::string& note : made.notes) note = note_of(note, missing);
+  std::erase(made.notes, "");
   return made;
 }
 
@@ -246,20 +104,38 @@ template <class Things, class Text>
 std::string line_of(const Things& things, const Text& text) {
   std::string line;
   for (std::size_t c = 0; c < things.size(); ++c) line += (c == 0 ? "" : " & ") + text(c);
+  // A row that begins with a bracket or an asterisk would be read as an argument of the row before.
+  if (line.starts_with('[') || line.starts_with('*')) line.insert(0, "{}");
   return line + " \\\\\n";
 }
 
-std::string headings(const Table& table) {
-  return line_of(table.columns, [&](std::size_t c) {
-    const Column& column = table.columns[c];
-    return latex_text(heading_of(column)) + (column.unit.empty() ? "" : " [" + latex_unit(column.unit) + "]");
-  });
+/// The headings in one line, or in two if a column needs two.
+std::string heading_lines(const std::vector<ColumnLayout>& layout) {
+  const bool two = std::ranges::any_of(layout, [](const ColumnLayout& one) { return !one.upper.empty(); });
+  return (two ? line_of(layout, [&](std::size_t c) { return layout[c].upper; }) : "") +
+         line_of(layout, [&](std::size_t c) { return layout[c].lower; });
 }
 
-std::string alignment(const Table& table) {
+/// The columns in the preamble of a tabular: "@{}lr>{\raggedright\arraybackslash}p{80pt}@{}".
+std::string preamble(const Table& table, const std::vector<ColumnLayout>& layout) {
   std::string letters;
-  for (const Column& column : table.columns) letters += column.kind == Column::Kind::number ? 'r' : 'l';
-  return letters;
+  for (std::size_t c = 0; c < layout.size(); ++c) {
+    if (layout[c].is_paragraph) {
+      letters += fmt::format(">{{\\raggedright\\arraybackslash}}p{{{:.0f}pt}}", layout[c].width);
+    } else {
+      letters += table.columns[c].kind == Column::Kind::number ? 'r' : 'l';
+    }
+  }
+  return "@{}" + letters + "@{}";
+}
+
+/// The first lines of a file, which are comments: the packages that are needed, and the columns that do not fit.
+std::string comments(bool is_long, bool has_paragraphs, const std::vector<std::string>& missing, double millimetres) {
+  std::string text = fmt::format("% needs \\usepackage{{{}booktabs{}}}\n", has_paragraphs ? "array," : "",
+                                 is_long ? ",longtable" : "");
+  if (missing.empty()) return text;
+  return text + fmt::format("% {:g} mm have no room for: {}\n", millimetres,
+                            latex_text(fmt::format("{}", fmt::join(missing, ", "))));
 }
 
 Table named_table(const char* name, const char* word, const char* caption, const std::vector<NamedUnit>& things) {
@@ -275,45 +151,36 @@ Table named_table(const char* name, const char* word, const char* caption, const
 
 }  // namespace
 
-std::string latex_text(std::string_view text) {
-  std::string all;
-  const std::string line = printable_line(text);
-  for (std::size_t at = 0; at < line.size();) {
-    const std::size_t length = std::max<std::size_t>(character_length(std::string_view(line).substr(at)), 1);
-    const std::string_view character = std::string_view(line).substr(at, length);
-    const std::string_view instead = length == 1 ? escaped(character.front()) : std::string_view();
-    all += length > 1 ? beyond_ascii(character) : std::string(instead.empty() ? character : instead);
-    at += length;
-  }
-  return all;
-}
-
-std::string latex_of(const Table& whole) {
-  const Table table = printed(whole);
+std::string latex_of(const Table& whole, double millimetres) {
+  const Table table = printed(whole, millimetres);
+  const std::vector<ColumnLayout> layout = layout_of(table, millimetres);
   const bool is_long = table.rows.size() > kMostRowsOfAPage;
+  const bool has_paragraphs = std::ranges::any_of(layout, &ColumnLayout::is_paragraph);
   const std::string caption = fmt::format("\\caption{{{}.}}\\label{{tab:{}}}", latex_text(table.caption), table.name);
   std::string rows;
   for (const std::vector<Cell>& row : table.rows) {
     rows += line_of(row, [&](std::size_t c) { return latex_cell(row[c], table.columns[c].kind); });
   }
   std::string notes;
-  for (const std::string& note : table.notes) notes += "\\par\\footnotesize " + latex_text(note) + ".\n";
-  const std::string head = headings(table);
-  const bool is_wide = table.columns.size() > kFewColumns;
-  const std::string narrow = "\\footnotesize\\setlength{\\tabcolsep}{3pt}\n";
+  for (const std::string& note : table.notes) notes += "\\par " + latex_text(note) + ".\n";
+  if (!notes.empty()) notes = "\\raggedright\n" + notes;
+  const std::string start = comments(is_long, has_paragraphs, missing_headings(whole, table), millimetres);
+  const std::string type =
+      fmt::format("\\fontsize{{8}}{{9.5}}\\selectfont\\setlength{{\\tabcolsep}}{{{:g}pt}}\n", kColumnGap / 2);
+  const std::string columns = preamble(table, layout);
+  const std::string head = heading_lines(layout);
   if (is_long) {
     return fmt::format(
-        "% needs \\usepackage{{booktabs,longtable}}\n"
-        "{}\\begin{{longtable}}{{{}}}\n{}\\\\\n\\toprule\n{}\\midrule\n\\endhead\n\\bottomrule\n\\endfoot\n{}"
-        "\\end{{longtable}}\n{}{}",
-        is_wide ? "\\begingroup" + narrow : "", alignment(table), caption, head, rows, notes,
-        is_wide ? "\\endgroup\n" : "");
+        "{}\\begingroup{}\\setlength{{\\LTcapwidth}}{{\\linewidth}}\n"
+        "\\begin{{longtable}}{{{}}}\n{}\\\\\n\\toprule\n{}\\midrule\n\\endhead\n\\bottomrule\n\\endfoot\n{}"
+        "\\end{{longtable}}\n{}\\par\\endgroup\n",
+        start, type, columns, caption, head, rows, notes);
   }
+  const std::string_view environment = millimetres > kJournalColumn ? "table*" : "table";
   return fmt::format(
-      "% needs \\usepackage{{booktabs}}\n"
-      "\\begin{{table}}\n\\centering\n{}\n{}\\begin{{tabular}}{{{}}}\n\\toprule\n{}\\midrule\n{}\\bottomrule\n"
-      "\\end{{tabular}}\n{}\\end{{table}}\n",
-      caption, is_wide ? narrow : "", alignment(table), head, rows, notes);
+      "{}\\begin{{{}}}\n\\centering{}{}\n\\begin{{tabular}}{{{}}}\n\\toprule\n{}\\midrule\n{}\\bottomrule\n"
+      "\\end{{tabular}}\n{}\\end{{{}}}\n",
+      start, environment, type, caption, columns, head, rows, notes, environment);
 }
 
 std::vector<Table> name_tables(const StoredResult& result) {
@@ -323,14 +190,14 @@ std::vector<Table> name_tables(const StoredResult& result) {
 }
 
 std::vector<std::string> write_latex(const StoredResult& result, std::span<const Table> tables,
-                                     const std::string& folder) {
+                                     const std::string& folder, double millimetres) {
   OutputFolder output(folder, valid_hash(result));
   for (const Table& table : tables) output.claim(table.name + ".tex");
   std::vector<std::string> paths;
   output.fill([&] {
     for (const Table& table : tables) {
       paths.push_back(output.file(table.name + ".tex"));
-      write_text(paths.back(), latex_of(table));
+      write_text(paths.back(), latex_of(table, millimetres));
     }
   });
   return paths;

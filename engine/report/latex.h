@@ -2,7 +2,6 @@
 
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "engine/report/table.h"
@@ -11,24 +10,20 @@
 /// Tables as LaTeX, for papers.
 namespace poesy {
 
-/// A text for LaTeX (pdflatex without further packages). Characters with a meaning in LaTeX are escaped, signs become
-/// their commands, and signs of a drawing become words. Control characters and letters of other than Latin alphabets
-/// become "?".
-std::string latex_text(std::string_view text);
-
 /// A table as a `table` with the rules of the package booktabs, or as a `longtable` if it has too many rows for a page:
-/// caption, label "tab:NAME", headings with units, rows, notes. Numbers have the digits that `poesy show` prints, in
-/// mathematics: "$1.2\times10^{-5}$", and in a column all as many. If the table is wider than a column of a journal,
-/// dispensable columns are left out until it fits, or all of them and empty columns if it has more than nine; notes on
-/// these columns are left out as well. The first line, a comment, names the packages that are needed.
-std::string latex_of(const Table& table);
+/// caption, label "tab:NAME", headings with units, rows, notes, in type of 8 points. A table of more than 85 mm is a
+/// `table*`, which spans both columns of a page. Numbers have the digits that `poesy show` prints, in mathematics:
+/// "$1.2\times10^{-5}$", and in a column all as many. The columns are those of fitted() for this width; notes on the
+/// others are left out as well. The first lines are comments: the packages that are needed, and the columns that do not
+/// fit.
+std::string latex_of(const Table& table, double millimetres);
 
 /// Tables of the pose coordinates, the errors and the responses of a result, with units and descriptions.
 std::vector<Table> name_tables(const StoredResult& result);
 
-/// Writes each table as a file NAME.tex into a folder; see export_tables() for the rules of the folder. Returns the
-/// paths of the files. Throws FileError and InputError.
+/// Writes each table as a file NAME.tex for this width into a folder; see export_tables() for the rules of the folder.
+/// Returns the paths of the files. Throws FileError and InputError.
 std::vector<std::string> write_latex(const StoredResult& result, std::span<const Table> tables,
-                                     const std::string& folder);
+                                     const std::string& folder, double millimetres);
 
 }  // namespace poesy

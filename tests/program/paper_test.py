@@ -41,10 +41,11 @@ identical_limbs = [1, 2, 3]
 each = true
 cost = { law = "reciprocal", b = 1, unit = "mm" }
 """
-# What LaTeX has without packages, and the rules of booktabs.
+# What LaTeX has without packages, the rules of booktabs, and a word of array.
 COMMANDS = {"begin", "end", "centering", "caption", "label", "toprule", "midrule", "bottomrule", "par", "footnotesize",
             "begingroup", "endgroup", "setlength", "tabcolsep", "endhead", "endfoot", "times", "textbar", "textless",
-            "textgreater", "textbackslash", "char", "O", "pm", "mu", "infty"}
+            "textgreater", "textbackslash", "char", "O", "pm", "mu", "infty", "fontsize", "selectfont", "raggedright", "arraybackslash",
+            "LTcapwidth", "linewidth"}
 
 
 def plain(cell):
@@ -69,11 +70,13 @@ def rows_of(text):
 
 def printed(table, text):
     """The positions of the columns that a file has, by its headings."""
-    headings = [plain(cell) for cell in text.split("\\toprule\n")[1].split(" \\\\\n")[0].split(" & ")]
+    lines = text.split("\\toprule\n")[1].split("\\midrule\n")[0].removesuffix(" \\\\\n").split(" \\\\\n")
+    parts = zip(*([plain(cell.removeprefix("{}").strip()) for cell in re.split(r"(?:^| )& ?", line)] for line in lines))
+    headings = [" ".join(part for part in column if part) for column in parts]
     kept = []
     for position, column in enumerate(table["columns"]):
         heading = column["heading"] or column["name"]
-        if len(kept) < len(headings) and re.sub(r" \[[^]]*\]$", "", headings[len(kept)]) == heading:
+        if len(kept) < len(headings) and re.sub(r" ?\[[^]]*\]$", "", headings[len(kept)]) == heading:
             kept.append(position)
     assert len(kept) == len(headings), (headings, table["columns"])
     return kept
@@ -104,7 +107,8 @@ class Paper(ProgramTest):
 
     def check_rows(self, text):
         """All rows, also that of the headings, have as many cells as the table has columns."""
-        columns = len(re.search(r"\\begin\{(?:tabular|longtable)\}\{([lr]+)\}", text)[1])
+        preamble = re.search(r"\\begin\{(?:tabular|longtable)\}\{@\{\}(.*)@\{\}\}", text)[1]
+        columns = len(re.sub(r">\{[^}]*\}p\{[0-9]+pt\}", "p", preamble))
         rows = [line for line in text.splitlines() if line.endswith(" \\\\") and not line.startswith("\\caption")]
         self.assertGreater(len(rows), 0)
         for row in rows:
@@ -120,7 +124,8 @@ class Paper(ProgramTest):
         self.check_rows(text)
         self.assertIn("Effect of each error on angular\\_deformation", text)
         self.assertIn("index $\\times$ sigma", text)
-        self.assertNotIn("published", text)  # neither the column nor the note on it
+        self.assertIn("not converged, published\n", text.split("\\begin{table}")[0])
+        self.assertNotIn("published", text.split("\\begin{table}")[1])  # neither the column nor the note on it
         self.assertIn("low, high: its 95 \\% interval", text)
         whole = json.loads(self.succeeds("show", "study.h5", "--json"))["tables"]
         self.assertTrue(any("published: " in note for table in whole for note in table["notes"]))
@@ -152,7 +157,7 @@ class Paper(ProgramTest):
                 self.assertEqual(text.count(f"\\end{{{environment}}}"), 1)
         errors = (self.folder / "tables/errors.tex").read_text()
         self.assertIn("delta\\_1\\_1\\_y & mm & ", errors)
-        self.assertIn("\\begin{longtable}{lll}", errors)
+        self.assertIn("\\begin{longtable}{@{}ll", errors)
 
     def test_a_drawing_compiles_without_further_packages(self):
         self.write("linear-delta-drawing.toml", (MECHANISMS / "linear-delta-drawing.toml").read_text())
@@ -162,7 +167,7 @@ class Paper(ProgramTest):
         for path in (self.folder / "tables").glob("*.tex"):
             text = path.read_text(encoding="utf-8")
             self.assertTrue(text.isascii(), path.name)
-            self.assertRegex(text.split("\n")[0], r"^% needs \\usepackage\{booktabs(,longtable)?\}$")
+            self.assertRegex(text.split("\n")[0], r"^% needs \\usepackage\{(array,)?booktabs(,longtable)?\}$")
             code = "\n".join(text.split("\n")[1:])
             self.assertLessEqual(set(re.findall(r"\\([A-Za-z]+)", code)), COMMANDS, path.name)
             self.assertEqual(code.count("{"), code.count("}") , path.name)
@@ -170,9 +175,9 @@ class Paper(ProgramTest):
         table = next(one for one in json.loads(self.succeeds("show", "study.h5", "--json"))["tables"] if one["name"] == "drawing")
         self.assertGreaterEqual(len(table["columns"]), 15)
         self.assertEqual([table["columns"][c]["name"] for c in printed(table, drawing)],
-                         ["feature", "symbol", "zone", "datums", "over", "cost", "mean_square_share", "remark"])
+                         ["feature", "symbol", "zone", "datums", "cost"])
         rail = next(line for line in drawing.split("\n") if line.startswith("1-3 rail & "))
-        self.assertRegex(rail, r"^1-3 rail & position & \\O\{\}0\.\d+ mm & A\\textbar\{\}B & 500 mm & ")
+        self.assertRegex(rail, r"^1-3 rail & position & \\O\{\}0\.\d+ mm & A\\textbar\{\}B & \$\d+\.\d+\$ ")
         self.assertIn("$\\pm$", drawing)
         self.compile()
 
@@ -190,16 +195,52 @@ class Paper(ProgramTest):
         self.assertIn("a \\$leg\\_\\{1\\}\\$ \\& 100 \\% of \\textbackslash{}\\textbackslash{}it\\#\\textasciitilde{}\\textasciicircum{}", errors)
         self.compile()
 
-    def compile(self):
-        """Compiles all tables where there is a LaTeX."""
+    def compile(self, size=85):
+        """Compiles all tables where there is a LaTeX. No line is wider than the page."""
         if shutil.which("pdflatex") is None:
-            return
-        tables = "".join(f"\\input{{{path}}}\n" for path in sorted((self.folder / "tables").glob("*.tex")))
-        self.write("paper.tex", "\\documentclass{article}\n\\usepackage{booktabs,longtable}\n"
-                                f"\\begin{{document}}\n{tables}\\end{{document}}\n")
+            self.skipTest("pdflatex is not installed")
+        tables = "".join(f"\\input{{{path}}}\\clearpage\n" for path in sorted((self.folder / "tables").glob("*.tex")))
+        self.write("paper.tex", "\\documentclass{article}\n\\usepackage{array,booktabs,longtable}\n"
+                                f"\\setlength{{\\textwidth}}{{{size}mm}}\n\\begin{{document}}\n{tables}\\end{{document}}\n")
         done = subprocess.run(["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "paper.tex"], cwd=self.folder,
                               capture_output=True, timeout=300, check=False)
-        self.assertEqual(done.returncode, 0, done.stdout.decode(errors="replace")[-2000:])
+        said = done.stdout.decode(errors="replace")
+        self.assertEqual(done.returncode, 0, said[-2000:])
+        self.assertEqual([too for too in re.findall(r"Overfull \\hbox \(([\d.]+)pt too wide", said) if float(too) > 1.0], [], said)
+
+    def small_results(self):
+        """One result of each kind."""
+        for kind in ("sensitivity", "identification", "evaluate", "monte-carlo", "sobol", "allocation", "coupling"):
+            text = self.succeeds("template", "3-prs" if kind == "coupling" else "2upr-rpu", kind)
+            text = re.sub(r"^samples = \d+", "samples = 100", re.sub(r"^count = \d+", "count = 3", text, flags=re.M), flags=re.M)
+            self.write("study.toml", text)
+            self.assertIn(self.poesy("run", "study.toml", "-o", f"{kind}.h5", "--quiet").returncode, (0, 5, 6), kind)
+            yield f"{kind}.h5"
+        self.write("study.toml", MACHINES)
+        self.succeeds("sweep", "study.toml", "--set", "errors.linear.sigma=0.01,0.02mm", "-o", "sweep.h5", "--quiet")
+        yield "sweep.h5"
+        for path in (MECHANISMS.parent / "calibration").iterdir():
+            shutil.copyfile(path, self.folder / path.name)
+        self.succeeds("calibrate", "delta-measured.toml", "--measured", "delta-heights.csv", "-o", "calibration.h5")
+        yield "calibration.h5"
+
+    def test_tables_of_every_kind_fit_in_their_width(self):
+        for result in self.small_results():
+            for size in (85, 170):
+                with self.subTest(result=result, size=size):
+                    shutil.rmtree(self.folder / "tables", ignore_errors=True)
+                    self.succeeds("export", result, "-d", "tables", "--latex", "--size", f"{size}mm")
+                    self.compile(size)
+
+    def test_a_yield_has_its_limit(self):
+        self.run_machines()
+        self.succeeds("export", "study.h5", "-d", "tables", "--latex")
+        text = (self.folder / "tables/yield.tex").read_text()
+        self.assertRegex(text, r"gap & .*\$0\.04\$ & mm \\\\")
+        for size, said in (("30mm", b"40 to 400 mm"), ("wide", b"e.g. 85mm or 170mm"), ("2deg", b"e.g. 85mm or 170mm")):
+            done = self.poesy("export", "study.h5", "-d", "tables", "--latex", "--size", size)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(said, done.stderr)
 
     def test_tables_are_kept_beside_csv_of_the_same_result(self):
         self.run_machines()

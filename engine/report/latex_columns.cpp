@@ -1,0 +1,230 @@
+#include "engine/report/latex_columns.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "engine/report/latex_text.h"
+
+namespace poesy {
+namespace {
+
+constexpr double kPointsPerMillimetre = 72.27 / 25.4;
+/// Kept free in mm, because the estimated widths are without kerning, which can make words wider.
+constexpr double kReserve = 1.0;
+/// The least width in points of a column of words that is broken into lines, unless a word is wider.
+constexpr double kLeastParagraph = 60.0;
+
+bool is_interval(const Column& column) { return heading_of(column) == "low" || heading_of(column) == "high"; }
+
+/// Returns true if the column belongs to the answer of a table, whatever its value is.
+bool is_of_the_answer(const Column& column) {
+  constexpr std::array<std::string_view, 3> kHeadings{"limit", "unit", "value"};
+  return is_interval(column) || std::ranges::find(kHeadings, heading_of(column)) != kHeadings.end();
+}
+
+double cell_width(const Cell& cell, Column::Kind kind) {
+  const bool is_number = kind == Column::Kind::number && latex_number(cell.text);
+  return is_number ? latex_number_width(cell.text) : latex_width(cell.text);
+}
+
+/// The widths that a column can have.
+struct Widths {
+  double least;    ///< with the cells broken into lines
+  double natural;  ///< without broken cells
+};
+
+double widest_word(std::string_view text) {
+  double widest = 0.0;
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t end = std::min(text.find(' ', from), text.size());
+    widest = std::max(widest, latex_width(text.substr(from, end - from)));
+    from = end + 1;
+  }
+  return widest;
+}
+
+/// A heading with its unit in LaTeX, and its width. It has two lines if one is wider than the cells.
+struct Heading {
+  std::string upper;
+  std::string lower;
+  double width;
+};
+
+Heading heading_in_lines(const Column& column, double cells) {
+  const std::string words(heading_of(column));
+  const std::string unit = column.unit.empty() ? "" : "[" + latex_unit(column.unit) + "]";
+  const double unit_width = column.unit.empty() ? 0.0 : latex_width("[" + column.unit + "]");
+  const double blank = column.unit.empty() ? 0.0 : latex_width(" ");
+  const auto below = [&](const std::string& text) {
+    return latex_text(text) + (text.empty() || unit.empty() ? "" : " ") + unit;
+  };
+  Heading best{"", below(words), latex_width(words) + blank + unit_width};
+  for (std::size_t at = words.find(' '); best.width > cells; at = words.find(' ', at + 1)) {
+    const std::string lower = at == std::string::npos ? "" : words.substr(at + 1);
+    if (lower.empty() && unit.empty()) break;
+    const std::string upper = words.substr(0, at);
+    const double lower_width = latex_width(lower) + (lower.empty() ? 0.0 : blank) + unit_width;
+    const double width = std::max(latex_width(upper), lower_width);
+    if (width < best.width) best = {latex_text(upper), below(lower), width};
+    if (at == std::string::npos) break;
+  }
+  return best;
+}
+
+double widest_cell(const Table& table, std::size_t c) {
+  double widest = 0.0;
+  for (const std::vector<Cell>& row : table.rows) {
+    widest = std::max(widest, cell_width(row[c], table.columns[c].kind));
+  }
+  return widest;
+}
+
+Widths widths_of(const Table& table, std::size_t c) {
+  const double cells = widest_cell(table, c);
+  const double heading = heading_in_lines(table.columns[c], cells).width;
+  const double natural = std::max(cells, heading);
+  if (table.columns[c].kind == Column::Kind::number) return {natural, natural};
+  double word = 0.0;
+  for (const std::vector<Cell>& row : table.rows) word = std::max(word, widest_word(row[c].text));
+  return {std::max({word, heading, std::min(natural, kLeastParagraph)}), natural};
+}
+
+/// The room for the columns of a table in points, without the gaps between them.
+double room_of(const Table& table, double millimetres) {
+  return (millimetres - kReserve) * kPointsPerMillimetre - kColumnGap * static_cast<double>(table.columns.size() - 1);
+}
+
+bool fits(const Table& table, double millimetres) {
+  double width = 0.0;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) width += widths_of(table, c).least;
+  return width <= room_of(table, millimetres);
+}
+
+template <class Keep>
+Table with_columns(const Table& table, const Keep& keep) {
+  Table made = table;
+  for (std::size_t c = table.columns.size(); c-- > 0;) {
+    if (keep(c)) continue;
+    const auto at = static_cast<std::ptrdiff_t>(c);
+    made.columns.erase(made.columns.begin() + at);
+    for (std::vector<Cell>& row : made.rows) row.erase(row.begin() + at);
+  }
+  return made;
+}
+
+/// The first column of a type that is not dispensable, which always stays: the names, or the most important number.
+std::size_t first_of(const Table& table, std::span<const Column::Kind> kinds) {
+  const auto at = std::ranges::find_if(table.columns, [&](const Column& column) {
+    return column.dispensable == 0 && std::ranges::find(kinds, column.kind) != kinds.end();
+  });
+  return static_cast<std::size_t>(at - table.columns.begin());
+}
+
+bool always_stays(const Table& table, std::size_t c) {
+  constexpr std::array kAny{Column::Kind::text, Column::Kind::number};
+  constexpr std::array kNumber{Column::Kind::number};
+  return c == first_of(table, kAny) || c == first_of(table, kNumber);
+}
+
+Table without_empty_columns(const Table& table) {
+  return with_columns(table, [&](std::size_t c) {
+    return always_stays(table, c) ||
+           std::ranges::any_of(table.rows, [c](const std::vector<Cell>& row) { return row[c].text != "-"; });
+  });
+}
+
+/// The column of the value to which an interval belongs, or the column itself.
+std::size_t value_of(const Table& table, std::size_t c) {
+  std::size_t value = c;
+  while (value > 0 && is_interval(table.columns[value])) --value;
+  return value;
+}
+
+/// The dispensability of a column for a paper; 0 if it is not left out with the dispensable columns. Intervals and
+/// units go with the number to their left.
+int dispensable(const Table& table, std::size_t c) {
+  std::size_t number = c;
+  while (number > 0 && (is_interval(table.columns[number]) || heading_of(table.columns[number]) == "unit")) --number;
+  return is_of_the_answer(table.columns[number]) ? 0 : table.columns[number].dispensable;
+}
+
+/// The table without its most dispensable group of columns; none if no column is dispensable.
+std::optional<Table> without_a_group(const Table& table) {
+  int most = 0;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) most = std::max(most, dispensable(table, c));
+  if (most == 0) return std::nullopt;
+  return with_columns(table, [&](std::size_t c) { return dispensable(table, c) < most; });
+}
+
+/// The table without the rightmost column that is not of the answer, or without the rightmost; none if only the first
+/// column and the first number are left.
+std::optional<Table> without_a_column(const Table& table) {
+  for (const bool also_answer : {false, true}) {
+    for (std::size_t c = table.columns.size(); c-- > 0;) {
+      if (always_stays(table, c) || (!also_answer && is_of_the_answer(table.columns[c]))) continue;
+      return with_columns(table, [&](std::size_t other) { return value_of(table, other) != c && other != c; });
+    }
+  }
+  return std::nullopt;
+}
+
+/// Makes the widest columns narrower, not below their least widths, until all fit in the room.
+void narrow(std::vector<ColumnLayout>& layout, const std::vector<Widths>& widths, double room) {
+  const auto total = [&] {
+    return std::transform_reduce(layout.begin(), layout.end(), 0.0, std::plus(),
+                                 [](const auto& one) { return one.width; });
+  };
+  while (total() > room) {
+    std::optional<std::size_t> widest;
+    for (std::size_t c = 0; c < layout.size(); ++c) {
+      const bool can_shrink = layout[c].width > widths[c].least;
+      if (can_shrink && (!widest || layout[c].width > layout[*widest].width)) widest = c;
+    }
+    if (!widest) return;
+    layout[*widest].width = std::max(layout[*widest].width - 1.0, widths[*widest].least);
+    layout[*widest].is_paragraph = true;
+  }
+}
+
+}  // namespace
+
+std::string_view heading_of(const Column& column) { return column.heading.empty() ? column.name : column.heading; }
+
+std::string latex_cell(const Cell& cell, Column::Kind kind) {
+  if (cell.text == "-") return "--";
+  if (kind == Column::Kind::text) return latex_text(cell.text);
+  if (cell.text == "inf" || cell.text == "-inf") return cell.text.front() == '-' ? "$-\\infty$" : "$\\infty$";
+  return latex_number(cell.text).value_or(latex_text(cell.text));
+}
+
+Table fitted(const Table& table, double millimetres) {
+  if (fits(table, millimetres)) return table;
+  Table made = without_empty_columns(table);
+  while (!fits(made, millimetres)) {
+    std::optional<Table> less = without_a_group(made);
+    if (!less) less = without_a_column(made);
+    if (!less) return made;
+    made = *std::move(less);
+  }
+  return made;
+}
+
+std::vector<ColumnLayout> layout_of(const Table& table, double millimetres) {
+  std::vector<ColumnLayout> layout;
+  std::vector<Widths> widths;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    widths.push_back(widths_of(table, c));
+    Heading heading = heading_in_lines(table.columns[c], widest_cell(table, c));
+    layout.push_back({std::move(heading.upper), std::move(heading.lower), widths.back().natural});
+  }
+  narrow(layout, widths, room_of(table, millimetres));
+  return layout;
+}
+
+}  // namespace poesy
