@@ -14,6 +14,7 @@
 #include "engine/report/sources.h"
 #include "engine/report/tables.h"
 #include "engine/schema/settings.h"
+#include "engine/storage/version.h"
 #include "engine/study/limit_keys.h"
 
 namespace poesy {
@@ -229,13 +230,16 @@ std::string method_text(const ReportKind& kind, const StoredResult& result, cons
 }
 
 std::string method_references(const ReportKind& kind, const StoredResult& result) {
+  // The year of another version is not known.
+  const std::string year =
+      result.poesy_version == poesy_version() ? fmt::format("  year = {{{}}},\n", poesy_year()) : "";
   std::string text = fmt::format(
       "@misc{{poesy,\n"
       "  author = {{{{The poesy developers}}}},\n"
       "  title = {{poesy: a parallel Monte Carlo sensitivity engine for precision parallel robots}},\n"
-      "  note = {{Version {}, commit {}}}\n"
+      "{}  note = {{Version {}, commit {}}}\n"
       "}}\n",
-      result.poesy_version, result.git_commit);
+      year, result.poesy_version, result.git_commit);
   std::vector<std::string_view> sources = method_of(kind, result).sources;
   if (yield_of(result) != nullptr) sources.push_back(kClopperPearson);
   for (const std::string_view source : sources) text += fmt::format("\n{}", source);

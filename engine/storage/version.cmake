@@ -10,4 +10,7 @@ if(GIT AND EXISTS "${SOURCE_DIR}/.git")
     set(POESY_GIT_COMMIT "${commit}")
   endif()
 endif()
+# The year in which the version was released, for citations.
+file(STRINGS "${SOURCE_DIR}/CITATION.cff" POESY_YEAR REGEX "^date-released: ")
+string(REGEX MATCH "[0-9][0-9][0-9][0-9]" POESY_YEAR "${POESY_YEAR}")
 configure_file("${CMAKE_CURRENT_LIST_DIR}/version.cpp.in" "${OUTPUT}" @ONLY)

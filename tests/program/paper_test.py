@@ -261,6 +261,9 @@ class Paper(ProgramTest):
                      "for 1500 machines", "platform", "All 4 500 solves converged", "gap (0.04 mm)", "The yield is ",
                      "the seed 1", result["content_sha256"], "@misc{poesy,"):
             self.assertIn(said, words)
+        released = re.search(r'^date-released: "(\d+)-', (GALLERY.parents[1] / "CITATION.cff").read_text(), re.M)
+        self.assertIn(f"year = {{{released[1]}}}", words)
+        self.assertIn("doi = {10.1093/biomet/26.4.404}", words)
         self.assertNotIn("relative: ", words)  # no error is
         done = self.poesy("show", "study.h5", "study.h5", "--method")
         self.assertEqual(done.returncode, 2)
