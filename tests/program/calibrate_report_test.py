@@ -109,8 +109,11 @@ class CalibrationReport(ProgramTest):
         z = moved.index("z")
         np.testing.assert_allclose(fields["z, root mean square"], np.hypot(left[0][:, z], left[1][:, z]) / MM, rtol=1e-6)
         np.testing.assert_allclose(fields["z, expected"], left[0][:, z] / MM, rtol=1e-6)
+        components = [moved.index(name) for name in ("x", "y", "z")]
+        np.testing.assert_allclose(fields["position, root mean square"],
+                                   np.sqrt((left[0][:, components]**2 + left[1][:, components]**2).sum(axis=1)) / MM, rtol=1e-6)
         # The platform of this printer does not turn, so its tool moves as P does.
-        self.assertEqual({label.split(",")[0] for label in fields}, {"x", "y", "z"})
+        self.assertEqual({label.split(",")[0] for label in fields}, {"x", "y", "z", "position"})
 
     def test_no_noise(self):
         """Without noise residuals have no standard deviation: they are ordered by their size."""

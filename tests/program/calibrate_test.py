@@ -106,8 +106,13 @@ class Calibrate(ProgramTest):
         self.succeeds("calibrate", "delta-measured.toml", "--measured", "delta-heights.csv", "-o", "machine.h5")
         self.succeeds("report", "machine.h5", "-o", "machine.html")
         page = " ".join((self.folder / "machine.html").read_text().split())
-        self.assertIn("Fitted: zero_1 \u22120.4571 mm, zero_2 0.09166 mm,", page)
-        self.assertRegex(page, r"and 1 more; left at the 7 poses, predicted: x 0\.2078 mm")
+        self.assertRegex(page, r"Fitted: zero_1 \u22120\.4571 \u00b1 [0-9.]+ mm, zero_2 0\.09166 \u00b1 [0-9.]+ mm,")
+        self.assertRegex(page, r"and 1 more \(95 % intervals\); left at the 7 poses, predicted: x 0\.2078 mm")
+        self.assertRegex(page, r"position 0\.346\d* mm \(root mean square\)")
+        self.assertIn("File delta-heights.csv: ", page)
+        for said in ("1 of 7 directions is below the noise", "5 more errors have a tolerance and are not fitted",
+                     "measure at the first of the poses to measure next"):
+            self.assertIn(said, page.split("What is measured")[1])
         self.assertIn("calibration of delta-puu: 7 fitted errors, 7 poses", page)
 
     def test_printer_with_estimated_noise(self):

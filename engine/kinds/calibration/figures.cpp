@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -117,6 +118,16 @@ std::vector<double> left_rms_at_poses(const CalibrationResult& found, std::size_
   return list;
 }
 
+/// [poses] The same of a length, SI.
+std::vector<double> left_lengths_at_poses(const CalibrationResult& found, const LeftLength& length) {
+  std::vector<double> list = left_rms_at_poses(found, length.first);
+  for (const std::size_t next : {length.first + 1, length.first + 2}) {
+    const std::vector<double> component = left_rms_at_poses(found, next);
+    for (std::size_t m = 0; m < list.size(); ++m) list[m] = std::hypot(list[m], component[m]);
+  }
+  return list;
+}
+
 void add_left(const StoredResult& result, Page& page) {
   const CalibrationResult& found = calibration_of(result);
   std::vector<LeftComponent> components = left_components(found);
@@ -136,6 +147,10 @@ void add_left(const StoredResult& result, Page& page) {
     const std::vector<double> mean = column_at(found.left_mean, one.component);
     const bool is_seen = std::ranges::any_of(mean, [](double value) { return std::abs(value) > kLeftRounding; });
     if (is_seen) add("expected", mean, true);
+  }
+  if (const std::optional<LeftLength> length = left_length(found); length && found.noise_is_known != 0) {
+    fields.insert(fields.begin(), {length->named.name + ", root mean square", unit_text(length->named),
+                                   figures.add("left/length", left_lengths_at_poses(found, *length), length->named)});
   }
   Section& section = page.add_section("left", "What the calibrated controller leaves");
   figures.add_note(section);

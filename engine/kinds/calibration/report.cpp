@@ -112,15 +112,45 @@ MethodWords method(const StoredResult& result) {
                       counted(found.measured_poses, "pose", "poses"), as_sentence(residual_text(found)))};
 }
 
+/// A fitted value with half of its interval: "rods -0.1494 +- 0.1018 mm".
+std::string estimate_text(const CalibrationResult& found, std::size_t n) {
+  const Unit& unit = display(found.fitted[n]);
+  const double half = (found.high(n) - found.estimate(n)) / unit.si;
+  const std::string text = fmt::format("{} {}", found.fitted[n].name, number_text(found.estimate(n) / unit.si, 4));
+  return text + (std::isnan(half) ? "" : fmt::format(" +- {}", number_text(half, 2))) +
+         (unit.dimension == Dimension::number ? "" : " " + std::string(unit.name));
+}
+
+/// How sure the fitted values are: residuals, and what makes intervals less sure than they look.
+std::string sure_text(const CalibrationResult& found) {
+  std::string text = sentence(residual_text(found));
+  for (const std::string& note : unsure_notes(found)) text += " " + sentence(note);
+  return text;
+}
+
+/// The numbers for the controller, and what to measure next.
+std::string advice_text(const CalibrationResult& found) {
+  const std::string typed = typed_text(found);
+  std::string text = sentence(typed.empty() ? "give the controller the fitted values" : typed);
+  if (!found.gain.empty()) return text + " To know them better, measure at the first of the poses to measure next.";
+  if (unsure_notes(found).empty()) return text;
+  return text +
+         " To know them better, fit more errors and measure more: next = 5 in [analysis.calibration] names the "
+         "poses that tell most.";
+}
+
 /// The fitted values, and the displacement that remains with them.
 std::string found_text(const CalibrationResult& found) {
   constexpr std::size_t kMostValues = 6;
   std::vector<std::string> values;
   for (std::size_t n = 0; n < found.fitted.size(); ++n) {
-    values.push_back(found.fitted[n].name + " " + response_text(found.fitted[n], found.estimate(n)));
+    values.push_back(estimate_text(found, n));
   }
   const std::vector<std::string> left = left_notes(found);
-  return fmt::format("fitted: {}{}", some_names(values, kMostValues), left.empty() ? "" : "; " + left.front());
+  const std::string interval =
+      found.noise_is_known == 0 ? "" : fmt::format(" ({} intervals)", percent_text(found.conf_level));
+  return fmt::format("fitted: {}{}{}", some_names(values, kMostValues), interval,
+                     left.empty() ? "" : "; " + left.front());
 }
 
 /// If the measurements contradict the fitted errors, the answer says so first, because all else rests on them.
@@ -130,9 +160,9 @@ Answer answer(const StoredResult& result) {
   for (const std::string& warning : calibration_warnings(found)) lines.emplace_back("Caution", sentence(warning));
   if (const std::string kept = kept_text(found); !kept.empty()) lines.emplace_back("Limits", sentence(kept));
   lines.emplace_back("Answer", sentence(found_text(found)));
-  lines.emplace_back("Measured", sentence(measured_text(found)));
-  lines.emplace_back("How sure", sentence(residual_text(found)));
-  if (const std::string typed = typed_text(found); !typed.empty()) lines.emplace_back("What to do", sentence(typed));
+  lines.emplace_back("Measured", sentence("file " + measured_text(found)));  // the name keeps its small letters
+  lines.emplace_back("How sure", sure_text(found));
+  lines.emplace_back("What to do", advice_text(found));
   return lines;
 }
 

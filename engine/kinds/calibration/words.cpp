@@ -86,6 +86,22 @@ std::vector<std::string> together_notes(const CalibrationResult& found) {
   return notes;
 }
 
+/// A clause on the directions that the measurements tell less about than the tolerances; empty if there are none.
+std::string below_noise_text(const CalibrationResult& found) {
+  if (found.noise_is_known == 0 || found.below_noise == 0) return {};
+  const bool one = found.below_noise == 1;
+  return fmt::format("{} of {} directions {} below the noise: the tolerances say more about {}", found.below_noise,
+                     found.fitted.size(), one ? "is" : "are", one ? "it" : "them");
+}
+
+/// A sentence on the errors that are not fitted. Precondition: there are some.
+std::string unfitted_text(const CalibrationResult& found) {
+  return fmt::format(
+      "{} more errors have a tolerance and are not fitted: a good chi-square does not mean that the fitted errors are "
+      "the true ones, and intervals are too narrow for them",
+      found.unfitted);
+}
+
 /// The root mean square over the poses of a component of the displacement that remains after calibration, including its
 /// uncertainty.
 double left_rms(const CalibrationResult& found, std::size_t component) {
@@ -157,23 +173,20 @@ std::string residual_text(const CalibrationResult& found) {
                                           : ": nothing contradicts the fitted errors");
 }
 
+std::vector<std::string> unsure_notes(const CalibrationResult& found) {
+  std::vector<std::string> notes;
+  if (std::string below = below_noise_text(found); !below.empty()) notes.push_back(std::move(below));
+  if (found.unfitted > 0) notes.push_back(unfitted_text(found));
+  return notes;
+}
+
 std::vector<std::string> estimate_notes(const CalibrationResult& found) {
   std::vector<std::string> notes = unseen_notes(found);
   for (std::string& note : together_notes(found)) notes.push_back(std::move(note));
-  const bool is_known = found.noise_is_known != 0;
   std::string condition = fmt::format("condition {:.4g} (scaled by the tolerances and the noise)", found.condition);
-  if (is_known && found.below_noise > 0) {
-    condition +=
-        fmt::format("; {} of {} directions {} below the noise: the tolerances say more about {}", found.below_noise,
-                    found.fitted.size(), found.below_noise == 1 ? "is" : "are", found.below_noise == 1 ? "it" : "them");
-  }
+  if (const std::string below = below_noise_text(found); !below.empty()) condition += "; " + below;
   notes.push_back(std::move(condition));
-  if (found.unfitted > 0) {
-    notes.push_back(
-        fmt::format("{} more errors have a tolerance and are not fitted: a good chi-square does not mean that "
-                    "the fitted errors are the true ones, and intervals are too narrow for them",
-                    found.unfitted));
-  }
+  if (found.unfitted > 0) notes.push_back(unfitted_text(found));
   return notes;
 }
 
@@ -189,6 +202,15 @@ std::vector<LeftComponent> left_components(const CalibrationResult& found) {
   return list;
 }
 
+std::optional<LeftLength> left_length(const CalibrationResult& found) {
+  bool has_tool = false;
+  for (std::size_t c = kAngles; c < 2 * kAngles; ++c) has_tool = has_tool || !are_same(found, c + kAngles, c);
+  LeftLength made{{has_tool ? "tip_position" : "position", "m"}, (has_tool ? 2 : 1) * kAngles, 0.0};
+  for (std::size_t c = made.first; c < made.first + kAngles; ++c) made.rms = std::hypot(made.rms, left_rms(found, c));
+  if (!(made.rms > kLeftRounding)) return std::nullopt;
+  return made;
+}
+
 std::vector<std::string> left_notes(const CalibrationResult& found) {
   std::vector<std::string> parts;
   std::vector<std::string> unmeasured;
@@ -197,6 +219,9 @@ std::vector<std::string> left_notes(const CalibrationResult& found) {
     if (component >= 2 * kAngles) continue;
     parts.push_back(named.name + " " + response_text(named, rms));
     if (!is_measured(found, named.name) && !is_measured(found, "tip_" + named.name)) unmeasured.push_back(named.name);
+  }
+  if (const std::optional<LeftLength> length = left_length(found)) {
+    parts.push_back(length->named.name + " " + response_text(length->named, length->rms));
   }
   if (parts.empty()) return {};
   std::vector<std::string> notes;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,8 @@ std::string values_text(const CalibrationResult& found);
 std::string measured_text(const CalibrationResult& found);
 /// The size of the residuals, and the result of the chi-square test. Empty if the noise is not known.
 std::string residual_text(const CalibrationResult& found);
+/// What makes intervals less sure than they look: directions below the noise, and errors that are not fitted.
+std::vector<std::string> unsure_notes(const CalibrationResult& found);
 /// Sentences that name the estimates that are not determined, that are correlated, or that are below the noise.
 std::vector<std::string> estimate_notes(const CalibrationResult& found);
 /// What remains below this is rounding, m or rad.
@@ -29,6 +33,17 @@ struct LeftComponent {
 /// The components that remain. Components of rounding size are left out, and those of the tool point if they are those
 /// of P, because there is no tool or the platform does not turn.
 std::vector<LeftComponent> left_components(const CalibrationResult& found);
+
+/// The length of the displacement that remains of the tool's point, or without a tool of the platform's origin, over
+/// the poses, including the uncertainty, SI.
+struct LeftLength {
+  NamedUnit named;    ///< "tip_position" or "position"
+  std::size_t first;  ///< position of its x component on the axis `moved`; y and z follow
+  double rms;         ///< root mean square over the poses
+};
+
+/// None if nothing of it remains.
+std::optional<LeftLength> left_length(const CalibrationResult& found);
 
 /// Sentences about the displacement that remains after calibration.
 std::vector<std::string> left_notes(const CalibrationResult& found);

@@ -173,7 +173,7 @@ void add_features(std::span<const Table> tables, Page& page) {
 Page page_of(const ReportKind& kind, const ReportedResult& result) {
   Page page;
   const StoredResult& stored = result.stored;
-  page.title = stored.title.empty() ? stored.model + ", " + stored.kind : stored.title;
+  page.title = stored.title.empty() ? fmt::format("Study of {} ({})", stored.model, stored.kind) : stored.title;
   page.subtitle = subtitle(kind, result.stored);
   page.answer = answer(kind, result.stored);
   page.warnings = warnings(kind, result);
