@@ -103,8 +103,7 @@ int check(const std::string& path) {
   const Study study = read_study(path, registry(), StudyUse::run);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   const SelectedPoses poses = find_poses(study, *model, {}).value();
-  for (const std::string& doubt : doubts_of(study, poses)) say(Message::warning, doubt);
-  if (const std::string doubt = correction_doubt(study, *model); !doubt.empty()) say(Message::warning, doubt);
+  for (const std::string& doubt : all_doubts(study, *model, poses)) say(Message::warning, doubt);
   print(resolved_text(study));
   const Outlook expected = outlook(study, *model, poses.poses);
   print(fmt::format("\n# valid: {}\n{}", expected.solves, cost_text(expected)));

@@ -80,9 +80,10 @@ class ResumableRun {
       }
       say(Message::note, "there is no checkpoint " + files_.newer() + " to resume from: starting from the beginning");
     }
-    if (!options.resume && files_.exist()) {
-      throw InputError({.file = files_.newer()}, "holds an earlier run of this result, finished or not",
-                       "continue it with --resume, or remove it and " + files_.newer() + ".1 to start afresh");
+    if (const std::vector<std::string> left = files_.existing(); !options.resume && !left.empty()) {
+      throw InputError({.file = left.front()}, "holds an earlier run of this result, finished or not",
+                       "continue it with --resume, or remove it" + (left.size() > 1 ? " and " + left.back() : "") +
+                           " to start afresh");
     }
   }
   ResumableRun(const ResumableRun&) = delete;

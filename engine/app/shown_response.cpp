@@ -18,14 +18,27 @@ namespace {
 
 bool ranks_errors(const StoredResult& result) { return kind_of(result).report.two_rankings != nullptr; }
 
+/// The response that a word may mean: a similar name, the displacement of a point, "tip_position" for "tip", or the
+/// first name that begins with the word. Empty if there is none.
+std::string meant_response(const std::string& wanted, const std::vector<std::string>& known) {
+  const std::string displacement = wanted + "_position";
+  if (std::ranges::find(known, displacement) != known.end()) return displacement;
+  const std::string similar(nearest(wanted, std::vector<std::string_view>(known.begin(), known.end())));
+  if (!similar.empty()) return similar;
+  const auto longer = std::ranges::find_if(known, [&](const std::string& name) { return name.starts_with(wanted); });
+  return longer == known.end() ? "" : *longer;
+}
+
 }  // namespace
 
 std::string response_of(const std::string& wanted, const std::string& path, const StoredResult& result) {
   if (wanted.empty()) return default_ranking(result);
   const std::vector<std::string> known = names_of(result.responses);
   if (std::ranges::find(known, wanted) != known.end()) return wanted;
+  const std::string meant = meant_response(wanted, known);
   throw InputError({path}, fmt::format("--response: no response '{}' in this result", printable(wanted)),
-                   fmt::format("it has {}", fmt::join(known, ", ")));
+                   fmt::format("{}it has {}", meant.empty() ? "" : fmt::format("did you mean '{}'? ", meant),
+                               fmt::join(known, ", ")));
 }
 
 std::string choose_response(const std::string& wanted, const std::string& path, StoredResult& result) {

@@ -19,7 +19,8 @@ struct Synonym {
   std::string_view ours;
 };
 
-constexpr std::array<Synonym, 6> kSynonyms{{{"std", "sigma"},
+constexpr std::array<Synonym, 7> kSynonyms{{{"std", "sigma"},
+                                            {"tolerance", "half_width"},
                                             {"stddev", "sigma"},
                                             {"std_dev", "sigma"},
                                             {"sd", "sigma"},

@@ -7,6 +7,7 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/error.h"
+#include "engine/base/readable_line.h"
 #include "engine/base/text.h"
 #include "engine/result/result_parts.h"
 #include "engine/storage/content_hash.h"
@@ -66,7 +67,9 @@ void check_version(const StoredShard& shard) {
 void check_same_study(const StoredShard& shard, const StoredShard& first) {
   if (shard.study_text != first.study_text) {
     const auto [there, here] = first_difference(shard.study_text, first.study_text);
-    refuse(shard, fmt::format("is of another study: it has {} where {} has {}", there, first.path, here),
+    refuse(shard,
+           fmt::format("is of another study: it has {} where {} has {}", with_readable_quantities(there), first.path,
+                       with_readable_quantities(here)),
            "merge shards of one study");
   }
   if (shard.mechanism_text != first.mechanism_text) {

@@ -1,7 +1,11 @@
 #include "engine/schema/keys_section.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "engine/base/contract.h"
@@ -74,6 +78,42 @@ std::string unit_remedy(std::string_view text, Dimension dimension) {
   const Unit* meant = find_unit(written) == nullptr ? meant_unit(written, dimension) : nullptr;
   if (meant != nullptr) return "did you mean '" + std::string(meant->name) + "'?";
   return "write a number and a unit, e.g. " + example(dimension);
+}
+
+/// What to do about a key that does not apply for this word of the table's chooser: write the key that is missing, or
+/// the word for which the keys are complete. has: whether the table has a key.
+template <class Has>
+std::string remedy_for(const StudyTable& table, const StudyKey& refused, std::string_view word, const Has& has) {
+  const auto lacking = [&](std::string_view chosen) {
+    return std::ranges::find_if(table.keys, [&](const StudyKey& key) {
+      return key.required && holds_for(key.only_for, chosen) && !has(key.name);
+    });
+  };
+  const auto none = table.keys.end();
+  const auto missing = lacking(word);
+  const auto fitting = std::ranges::find_if(refused.only_for, [&](auto other) { return lacking(other) == none; });
+  if (missing == none || !refused.required || fitting == refused.only_for.end()) return "remove it";
+  return "write " + std::string(missing->name) + " = ... instead, or " + std::string(table.chooser) + " = \"" +
+         std::string(*fitting) + "\"";
+}
+
+/// A key that users expect in a table that does not have it.
+struct ExpectedKey {
+  std::string_view table;   ///< name of the table
+  std::string_view key;     ///< name of the key
+  std::string_view remedy;  ///< what to write instead
+};
+
+constexpr std::array kExpectedKeys{ExpectedKey{
+    "errors", "tolerance",
+    "write linear = { distribution = \"uniform\", half_width = \"0.02 mm\" }, and angular = { distribution = "
+    "\"uniform\", half_width = \"0.02 deg\" }"}};
+
+/// What to write instead of an unknown key of a table.
+std::string remedy_for_unknown(std::string_view table, std::string_view key, std::span<const std::string_view> known) {
+  const auto expected =
+      std::ranges::find_if(kExpectedKeys, [&](const ExpectedKey& one) { return one.table == table && one.key == key; });
+  return expected == kExpectedKeys.end() ? suggestion(key, known) : std::string(expected->remedy);
 }
 
 }  // namespace
@@ -220,7 +260,7 @@ void StudySection::allow(std::span<const std::string_view> known, std::string_vi
   for (const std::string& key : keys()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     throw InputError(place_of_key(key), "unknown " + std::string(what) + " '" + printable(key) + "'" + where(),
-                     suggestion(key, known));
+                     remedy_for_unknown(name_, key, known));
   }
 }
 
@@ -229,7 +269,10 @@ void StudySection::refuse_all_but_those_for(std::string_view word) const {
   for (const StudyKey& key : described_->keys) {
     const StudyKey& chosen = *described_->find(key.name, word);
     if (holds_for(chosen.only_for, word) || chosen.may_stay) continue;
-    refuse(key.name, described_->owner_of(word));
+    if (!find(key.name)) continue;
+    const auto has = [&](std::string_view name) { return table_->contains(name); };
+    throw InputError(place_of_key(key.name), full_name(key.name) + " does not belong to " + described_->owner_of(word),
+                     remedy_for(*described_, chosen, word, has));
   }
 }
 

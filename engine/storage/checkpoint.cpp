@@ -19,6 +19,7 @@
 #include "engine/base/contract.h"
 #include "engine/base/error.h"
 #include "engine/base/plain_file.h"
+#include "engine/base/readable_line.h"
 #include "engine/base/text.h"
 #include "engine/storage/content_hash.h"
 #include "engine/storage/file_writer.h"
@@ -159,7 +160,9 @@ void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& ch
         "give the samples as they were");
   const auto [there, here] = first_difference(checkpoint.study, run.study);
   check(checkpoint.study == run.study,
-        fmt::format("is of another study: it has {} where this study has {}", there, here), "give the study as it was");
+        fmt::format("is of another study: it has {} where this study has {}", with_readable_quantities(there),
+                    with_readable_quantities(here)),
+        "give the study as it was");
   check(checkpoint.poses == run.poses, "is of other poses under the same name", "give the poses as they were");
   const auto part = [](const std::string& shard) {
     return shard.empty() ? "the whole study" : "shard " + printable(shard);
@@ -232,7 +235,13 @@ Checkpoint decode_checkpoint(std::span<const std::byte> file) {
 CheckpointFiles::CheckpointFiles(const std::string& result_path)
     : result_(result_path), newer_(result_path + ".part"), older_(result_path + std::string(kOlderEnd)) {}
 
-bool CheckpointFiles::exist() const { return stands(newer_) || stands(older_); }
+std::vector<std::string> CheckpointFiles::existing() const {
+  std::vector<std::string> paths{newer_, older_};
+  std::erase_if(paths, [](const std::string& path) { return !stands(path); });
+  return paths;
+}
+
+bool CheckpointFiles::exist() const { return !existing().empty(); }
 
 std::optional<FoundCheckpoint> CheckpointFiles::find() {
   if (!exist()) return std::nullopt;

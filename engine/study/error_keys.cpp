@@ -320,11 +320,35 @@ void require_sizes(const StudySection& section, const std::string& word, const P
   }
 }
 
+/// A uniform distribution of a size as users write it on a drawing, as a line of a study file. If the size cannot be
+/// read, it is an example.
+std::string uniform_line(std::string_view written, Dimension dimension) {
+  std::string size = fmt::format("0.02 {}", display_unit(dimension).name);
+  for (const std::string_view sign : {"", "+-", "+/-", "\u00b1"}) {
+    if (!written.starts_with(sign)) continue;
+    try {
+      const std::string_view bare = trimmed(written.substr(sign.size()));
+      if (parse_quantity(bare, dimension).dimension == dimension) size = bare;
+    } catch (const QuantityError&) {  // the example stays
+    }
+  }
+  return fmt::format("{{ distribution = \"uniform\", half_width = \"{}\" }}", size);
+}
+
+/// Refuses a size in the place of a distribution.
+void refuse_size(const StudyValue& value, Dimension dimension) {
+  if (!value.is_text()) return;
+  const std::string written = printable(value.text());
+  value.fail(fmt::format("is the text '{}'", written),
+             "write a distribution, e.g. " + uniform_line(written, dimension));
+}
+
 /// Reads the distribution of an error, and whether it is drawn at each pose or once for each machine. usual: the
 /// distribution of other errors of this dimension. doubts: receives a warning if the unit of measured values looks
 /// wrong.
 StatedError read_error(const StudyValue& value, Dimension dimension, StudyUse use, const Distribution& usual,
                        std::vector<std::string>& doubts) {
+  refuse_size(value, dimension);
   const StudySection section = value.section();
   Parameters parameters{.dimension = dimension};
   read_keys(distribution_keys(), section, parameters, Nothing());

@@ -7,7 +7,6 @@
 
 #include "engine/base/contract.h"
 #include "engine/base/text.h"
-#include "models/chain/metric.h"
 #include "models/file/bodies.h"
 #include "models/file/factors.h"
 #include "models/file/numbers.h"
@@ -348,10 +347,6 @@ class Builder {
         made.points.push_back(made.platform.R.transpose() * (at - made.platform.p));
       }
     }
-    const std::string why = chain::why_no_metric(made.points, made.reach);
-    if (why.empty()) return;
-    throw InputError(file_.platform.place, "the metric has no meaning: " + why,
-                     "write metric_points = [...] in [platform], three or more that are not on one line");
   }
 
   const MechanismFile& file_;

@@ -9,10 +9,18 @@
 #include "engine/schema/keys.h"
 #include "models/chain/metric.h"
 #include "models/file/balanced_model.h"
+#include "models/file/metric_check.h"
 #include "models/file/published_model.h"
 
 namespace poesy::file {
 namespace {
+
+/// The mechanism for these values of the geometry. Faults of loops and drives come before faults of the metric.
+Checked checked_mechanism(const MechanismFile& file, std::span<const double> geometry, Workspace workspace) {
+  Checked found = checked(mechanism(file, geometry), workspace);
+  check_metric(file, found.mechanism);
+  return found;
+}
 
 /// A mechanism file, and its checked mechanism with the default geometry.
 struct Read {
@@ -22,7 +30,7 @@ struct Read {
 
   Checked with(std::span<const double> geometry) const {
     if (std::ranges::equal(geometry, defaults)) return at_defaults;
-    return checked(mechanism(file, geometry), Workspace::as_it_is);
+    return checked_mechanism(file, geometry, Workspace::as_it_is);
   }
 };
 
@@ -149,7 +157,7 @@ CatalogEntry with_own(CatalogEntry entry, const std::vector<OwnResponse>& own, c
 /// The catalog entry of a mechanism file.
 CatalogEntry entry_of(MechanismFile file, const std::string& path, const std::string& text) {
   const std::vector<double> defaults = default_geometry(file);
-  Checked found = checked(mechanism(file, defaults), Workspace::in_reach);
+  Checked found = checked_mechanism(file, defaults, Workspace::in_reach);
   const Mechanism& at_defaults = found.mechanism;
   const bool meets = found.home.passive_rank == found.home.loop_equations;
   std::vector<By> ways;

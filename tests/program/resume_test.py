@@ -170,7 +170,7 @@ class Resume(ResumptionTest):
         self.stop_early()
         for old, new, words in [
             ("seed = 5", "seed = 6", ["seed 5", "6"]),
-            ("0.2 deg", "0.3 deg", ["angular", "another study"]),
+            ("0.2 deg", "0.3 deg", ["angular", "another study", '"0.2 deg"', '"0.3 deg"']),
             ("samples = 12300", "samples = 300", ["12300", "300"]),
             ('"delta_1_1_y", ', "", ["delta_1_1_y"]),
             ('kind = "sensitivity"', 'kind = "monte-carlo"\ndraws = "per pose"', ["sensitivity", "monte-carlo"]),
@@ -213,6 +213,10 @@ class Resume(ResumptionTest):
         self.assertEqual(done.returncode, 2)
         self.assertIn(b"--resume", done.stderr)
         self.assertEqual(self.generations(), before)
+        self.older.unlink(missing_ok=True)
+        done = self.poesy("run", "study.toml", "-o", "out.h5", "--quiet")
+        self.assertIn(b"out.h5.part: holds an earlier run", done.stderr)
+        self.assertNotIn(b"out.h5.part.1", done.stderr)  # there is none to be removed
 
     def test_bad_times(self):
         self.write("study.toml", SENSITIVITY)

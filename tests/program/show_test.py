@@ -136,6 +136,7 @@ class Show(ProgramTest):
         self.assertIn("--top", self.refused("--top", "0"))
         self.assertIn("--width", self.refused("--width", "wide"))
         self.assertIn("linear_deformation", self.refused("--response", "liniar"))
+        self.assertIn("did you mean 'linear_deformation'?", self.refused("--response", "linear"))
 
     def test_what_is_not_ranked_is_not_sorted(self):
         self.write("all.toml", MONTE_CARLO)

@@ -87,6 +87,7 @@ class StudyNotes(ProgramTest):
         self.write_rps(of_file=('z = ["500 mm", "700 mm"]', 'z = ["650 mm", "750 mm"]'))
         asked = "home has z = 600 mm, outside the workspace from 650 mm to 750 mm (coordinates are absolute); is that meant?"
         self.assertIn(f"# hint: {asked}\n", self.succeeds("check", "study.toml"))
+        self.assertIn(f"poesy: warning: {asked}\n", self.errors_of("check", "study.toml"))
         self.assertEqual(self.errors_of("run", "study.toml", "-o", "r.h5", "--quiet"), f"poesy: warning: {asked}\n")
         swept = self.errors_of("sweep", "study.toml", "--set", "errors.linear.sigma=0.1,0.2mm", "-o", "s.h5", "--quiet")
         self.assertEqual(swept.count(asked), 1, swept)

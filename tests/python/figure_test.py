@@ -1,10 +1,12 @@
 """poesy.figure and `python3 -m poesy figure`: sizes, type, one figure for each kind, the same bytes, refusals."""
 
+import errno
 import os
 import re
 import shutil
 import subprocess
 import sys
+import unittest.mock
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
@@ -165,6 +167,12 @@ class Figures(FolderTest):
                 self.assertTrue(done.stderr.startswith("poesy: "))
         self.assertEqual(Path("mine.pdf").read_bytes(), b"mine")
         self.assertFalse(Path("f.pdf").exists())
+
+    def test_a_full_disk_names_the_file(self):
+        full = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        with unittest.mock.patch.object(Path, "write_bytes", side_effect=full):
+            with self.assertRaisesRegex(poesy.FileError, r"^full\.pdf: cannot be written \(No space left on device\); make room"):
+                poesy.figure(result("sensitivity"), "full.pdf")
 
     def test_nothing_half_written(self):
         Path("figure.pdf").mkdir()  # cannot be replaced

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import re
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._errors import NotInResult, StudyError
+from ._errors import FileError, NotInResult, StudyError
 from ._units import labelled
 
 if TYPE_CHECKING:
@@ -126,6 +127,9 @@ def _save(drawn: Figure, path: Path) -> None:
     try:
         partial.write_bytes(drawing.getvalue())
         partial.replace(path)
+    except OSError as error:
+        remedy = "make room, or write it elsewhere" if error.errno == errno.ENOSPC else "write it elsewhere"
+        raise FileError(f"{path}: cannot be written ({error.strerror}); {remedy}") from error
     finally:
         partial.unlink(missing_ok=True)
 

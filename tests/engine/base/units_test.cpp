@@ -6,6 +6,7 @@
 #include <numbers>
 #include <set>
 
+#include "engine/base/readable_line.h"
 #include "engine/base/text.h"
 
 namespace poesy {
@@ -67,6 +68,12 @@ TEST(Dimensions, HaveWordsAndAUnitOfTheSi) {
     if (dimension == Dimension::number) continue;
     EXPECT_EQ(parse_quantity(to_text({0.3, dimension})).si, 0.3);
   }
+}
+
+TEST(Dimensions, OfALineAreReadInTheUnitsThatPeopleUse) {
+  EXPECT_EQ(with_readable_quantities("limits.tip = \"0.00015 m\""), "limits.tip = \"0.15 mm\"");
+  EXPECT_EQ(with_readable_quantities("[\"-2e-04 m\", \"name\"]"), "[\"-0.2 mm\", \"name\"]");
+  EXPECT_EQ(with_readable_quantities("title = \"open"), "title = \"open");
 }
 
 TEST(Dimensions, AreReadInTheUnitsThatPeopleUse) {

@@ -106,7 +106,8 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
            "m.toml:16:5: platform.x is parallel to platform.z; give another direction"},
           {"tool        = [0, 0, \"100 mm\"]", "points = [[0, 0, 0], [0, 0, \"h\"], [0, 0, \"a\"]]",
            "m.toml:16:10: the metric has no meaning: the points are on one line, about which the platform may turn "
-           "unseen; write metric_points = [...] in [platform], three or more that are not on one line"},
+           "unseen; write in [platform] three or more of its points that are not on one line, e.g. metric_points = "
+           "[[\"100 mm\", 0, 0], [0, \"100 mm\", 0], [0, 0, \"100 mm\"]]"},
           {"tool        = [0, 0, \"100 mm\"]", "points = [[0, 0, 0], [0, 0, \"h\"]]",
            "m.toml:16:10: platform.points has fewer than three points; give three that are not on one line"},
           {"[[limb]]", "[limb]", "m.toml:18:1: limb is one table; write double brackets: [[limb]]"},
@@ -220,8 +221,10 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
           {"\"S\", at = [\"c\", 0, \"h\"] }", "\"S\", at = [\"c\", 0, \"h\"], actuated = true }",
            "m.toml:23:49: limb[0].joints[2].actuated does not belong to type = \"S\"; remove it"},
           {"\"S\", at = [\"c\", 0, \"h\"] }", "\"S\", at = [0, 0, \"h\"] }",
-           "m.toml:11:1: the metric has no meaning: the points are on one line, about which the platform may turn "
-           "unseen; write metric_points = [...] in [platform], three or more that are not on one line"},
+           "m.toml:23:3: the drives do not hold the platform, which has 4 freedoms and 3 drives: joint 'S' of limb 3 "
+           "is "
+           "loose, and the platform turns about (-0.77, 0.64, 0); write actuated = true at one more joint, or correct "
+           "the axes"},
           {"joints = [", "joints = []\nx = [",
            "m.toml:21:1: unknown key 'x' in [limb[0]]; known: name, from, to, copies, points, joints, links, features, "
            "clearances, "

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "models/file/metric_check.h"
 #include "models/file/mobility.h"
 #include "tests/models/file/files.h"
 
@@ -23,6 +24,7 @@ inline std::string problem_of(const std::string& text) {
     const MechanismFile file = read_mechanism_file(text, "m.toml");
     const Mechanism made = mechanism(file, default_geometry(file));
     check_mobility(made, home_mobility(made));
+    check_metric(file, made);
   } catch (const InputError& error) {
     return error.what();
   }

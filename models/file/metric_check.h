@@ -1,0 +1,12 @@
+#pragma once
+
+#include "models/file/mechanism.h"
+#include "models/file/mechanism_file.h"
+
+namespace poesy::file {
+
+/// Throws InputError if the platform's points define no metric. The message has points to copy, of the size of the
+/// mechanism.
+void check_metric(const MechanismFile& file, const Mechanism& made);
+
+}  // namespace poesy::file
