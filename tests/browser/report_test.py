@@ -85,6 +85,8 @@ class PageTest(unittest.TestCase):
         self.assertLessEqual(self.browser.printed_width(PAPER), PAPER)
         self.assertEqual(self.small_on_paper(), [])
         self.assertEqual(self.loose_notes(), [])
+        for pictures, in_first_line in self.lines_of_pictures():
+            self.assertEqual(in_first_line, min(pictures, 3))
 
     def check_silent(self, page):
         self.assertEqual(self.browser.console(), [])
@@ -102,6 +104,14 @@ class PageTest(unittest.TestCase):
         return self.browser.run(
             """return [...document.querySelectorAll(".table-wrap ~ .note")]
               .filter((note) => getComputedStyle(note).breakBefore !== "avoid").map((note) => note.textContent)""")
+
+    def lines_of_pictures(self):
+        """Of each figure of the mechanism the number of pictures, and of those in its first line, where it is printed."""
+        return self.browser.run(
+            """return [...document.querySelectorAll(".robot-poses")].map((figure) => {
+              const tops = [...figure.querySelectorAll(":scope > .robot-pose")].map((one) => one.offsetTop);
+              return [tops.length, tops.filter((top) => top === tops[0]).length];
+            })""")
 
     def small_on_paper(self):
         """Texts below 8 points where the page is printed, but for the indices of names."""
