@@ -38,18 +38,18 @@ struct ExportOptions {
   std::string size = "85mm";
 };
 
-constexpr double kNarrowest = 40.0;  ///< width of a table in mm
-constexpr double kWidest = 400.0;    ///< width of a table in mm
+constexpr double kNarrowestTable = 40.0;  ///< width of a table in mm
+constexpr double kWidestTable = 400.0;    ///< width of a table in mm
 
 /// Reads the width of tables, and returns it in mm.
 double width_of(const std::string& size) {
   try {
     const double width = parse_quantity(size, Dimension::length).si * 1e3;
-    if (width >= kNarrowest && width <= kWidest) return width;
+    if (width >= kNarrowestTable && width <= kWidestTable) return width;
   } catch (const QuantityError&) {  // refused below
   }
   throw InputError({}, fmt::format("the size of a table is '{}'", printable(size)),
-                   fmt::format("give its width, {} to {} mm, e.g. 85mm or 170mm", kNarrowest, kWidest));
+                   fmt::format("give its width, {} to {} mm, e.g. 85mm or 170mm", kNarrowestTable, kWidestTable));
 }
 
 /// Adds to tables of a result that was solved to first order a note on this, as far as they do not say it.
