@@ -50,7 +50,7 @@ void add_all() {
 #endif
     add("peak/" + isa, [=](benchmark::State& state) { peak(state, multiply_adds); });
     add("read/second_cache/" + isa, [=](benchmark::State& state) { read(state, sum, std::size_t{512} << 10); });
-    add("read/memory/" + isa, [=](benchmark::State& state) { read(state, sum, std::size_t{1} << 30); });
+    add("read/memory/" + isa, [=](benchmark::State& state) { read(state, sum, std::size_t{512} << 20); });
   }
 }
 

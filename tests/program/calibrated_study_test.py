@@ -111,7 +111,7 @@ class CalibratedStudy(ProgramTest):
         around = '[[0, 0, "-t"], ["4 mm", 0, "-t"], [0, "4 mm", "-t"]]'
         near = mechanism.replace('tool        = [0, 0, "-t"]', f'tool        = [0, 0, "-t"]\nmetric_points = {around}')
         self.assertNotEqual(near, mechanism)
-        wide = near.replace("4 mm", "900 mm")
+        wide = near.replace("4 mm", "600 mm")
         asked = plain.split("limits")[0] + 'calibrated = true\nlimits = { RESPONSE = "1 mm" }\n'
         told = "put metric_points around the tool"
         for text, response, is_told in ((mechanism, "tip_position", True), (mechanism, "tip_z", True),

@@ -51,8 +51,7 @@ TEST(NextPoses, HaveTheGainOfOneNumber) {
 /// What the columns of a frame explain tells nothing: only their Schur complement counts.
 TEST(NextPoses, CountWhatTheFrameLeaves) {
   const Matrix information = Matrix::Identity(2, 2);
-  Matrix row(1, 2);
-  row << 2.0, 1.0;
+  const Matrix row{{2.0, 1.0}};
   const auto chosen = next_poses(information, {row}, 1, 1);
   // Q + a^T a = [[5, 2], [2, 2]], whose Schur complement is 5 - 4 / 2 = 3.
   EXPECT_NEAR(chosen.front().gain, 0.5 * std::log2(3.0), 1e-14);

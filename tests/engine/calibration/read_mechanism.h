@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <sstream>
@@ -13,7 +14,7 @@ namespace poesy::calibration {
 
 /// The text of a mechanism among the data of the tests.
 inline std::string mechanism_text(const std::string& name, const std::string& folder = "calibration") {
-  std::ifstream file(std::string(POESY_TEST_DATA) + "/" + folder + "/" + name);
+  std::ifstream file(std::filesystem::path(POESY_TEST_DATA) / folder / name);
   std::stringstream text;
   text << file.rdbuf();
   return text.str();
