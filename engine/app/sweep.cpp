@@ -246,11 +246,12 @@ void check_geometry_key(const std::string& set, const SweptKey& swept, const Mod
   }
   const auto is_bare = [](const std::string& value) { return parse_number(value).has_value(); };
   if (parameter->dimension == Dimension::number || !std::ranges::all_of(swept.values, is_bare)) return;
-  // Small numbers are probably in SI, as in Python; others in the unit of drawings.
+  // Small numbers of a length are probably in SI, as in Python; others in the unit of drawings.
   constexpr double kSmall = 10.0;
   std::array<std::string_view, 2> units{display_unit(parameter->dimension).name, si_unit(parameter->dimension)};
   const auto is_small = [](const std::string& value) { return std::abs(*parse_number(value)) < kSmall; };
-  if (std::ranges::all_of(swept.values, is_small)) std::ranges::reverse(units);
+  const bool is_length = parameter->dimension == Dimension::length;
+  if (is_length && std::ranges::all_of(swept.values, is_small)) std::ranges::reverse(units);
   throw InputError(
       {}, "--set " + printable(set) + " has no unit",
       fmt::format("write it once, after the last number: {0}{1}, or {0}{2}", printable(set), units[0], units[1]));

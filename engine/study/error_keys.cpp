@@ -321,14 +321,15 @@ void require_sizes(const StudySection& section, const std::string& word, const P
 }
 
 /// A uniform distribution of a size as users write it on a drawing, as a line of a study file. If the size cannot be
-/// read, it is an example.
+/// read or is not greater than zero, it is an example.
 std::string uniform_line(std::string_view written, Dimension dimension) {
-  std::string size = fmt::format("0.02 {}", display_unit(dimension).name);
+  std::string size = dimension == Dimension::number ? "0.1 %" : fmt::format("0.02 {}", display_unit(dimension).name);
   for (const std::string_view sign : {"", "+-", "+/-", "\u00b1"}) {
     if (!written.starts_with(sign)) continue;
     try {
       const std::string_view bare = trimmed(written.substr(sign.size()));
-      if (parse_quantity(bare, dimension).dimension == dimension) size = bare;
+      const Quantity quantity = parse_quantity(bare, dimension);
+      if (quantity.dimension == dimension && quantity.si > 0.0) size = bare;
     } catch (const QuantityError&) {  // the example stays
     }
   }

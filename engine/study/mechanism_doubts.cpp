@@ -128,6 +128,9 @@ std::vector<std::string> workspace_doubts(const Study& study, const PoseSet& pos
 }
 
 std::string correction_doubt(const Study& study, const Model& model) {
+  // A correction of six drives moves each point of the platform back, to first order.
+  constexpr std::size_t kAllFreedoms = 6;
+  if (study.model().pose_coordinates.size() == kAllFreedoms) return {};
   const std::vector<PlatformPoint> corrected = model.metric_points();
   if (!study.mechanism.calibrated || !study.mechanism.file || corrected.empty()) return {};
   const std::optional<Sketch> home = model.sketch({});

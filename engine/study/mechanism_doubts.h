@@ -28,8 +28,9 @@ std::vector<std::string> workspace_doubts(const Study& study, const PoseSet& pos
 /// A warning if the study corrects the drives at each pose (`calibrated = true`), which is best for the points of
 /// Model::metric_points(), but limits the displacement of another point that these points are not around: their root
 /// mean square distance from it is more than a twentieth of the largest distance of a joint from it. Empty if there is
-/// nothing to warn of, or if the mechanism is not from a file, so that its points cannot be changed. model: the
-/// mechanism of the study.
+/// nothing to warn of, if the mechanism is not from a file, so that its points cannot be changed, or if its platform
+/// has six freedoms, because the correction then leaves nothing at any point to first order. model: the mechanism of
+/// the study.
 std::string correction_doubt(const Study& study, const Model& model);
 
 }  // namespace poesy

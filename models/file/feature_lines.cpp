@@ -40,6 +40,18 @@ void check_signs(std::string_view key, const StudyValue& value) {
 
 constexpr std::string_view kDigits = "0123456789";
 
+/// Returns true if the text has a number with a sign directly before it, at or behind a place. The sign of an exponent,
+/// as in "1e-5", does not count.
+bool has_signed_number(std::string_view text, std::size_t from) {
+  constexpr std::string_view kSigns = "+-";
+  for (std::size_t at = text.find_first_of(kSigns, from); at + 1 < text.size();
+       at = text.find_first_of(kSigns, at + 1)) {
+    const bool is_exponent = at > 0 && (text[at - 1] == 'e' || text[at - 1] == 'E');
+    if (!is_exponent && kDigits.find(text[at + 1]) != std::string_view::npos) return true;
+  }
+  return false;
+}
+
 /// Returns true if the text is a tolerance of two limits, such as "+0.05 -0.02 mm" or "0 / -0.05 mm".
 bool has_two_limits(std::string_view text) {
   constexpr std::string_view kSigns = "+-";
@@ -51,15 +63,18 @@ bool has_two_limits(std::string_view text) {
   if (end == digits || next + 1 >= text.size()) return false;
   if (kSigns.find(text[next]) != std::string_view::npos && text.find_first_of(kDigits, next + 1) == next + 1)
     return true;
-  return digits > first && text.find_first_of(kSigns, end) != std::string_view::npos;
+  return digits > first && has_signed_number(text, end);
 }
 
 /// Returns true if the text is a grade of ISO 286, such as "IT7", or a size with its zone, such as "905 js7".
 bool is_zone_of_iso_286(std::string_view text) {
-  const std::string_view last = text.substr(text.find_last_of(' ') + 1);
-  const std::size_t digits = last.find_first_of(kDigits);
-  if (digits == 0 || digits > 2 || last.find_first_not_of(kDigits, digits) != std::string_view::npos) return false;
-  return last.starts_with("IT") || (last.size() < text.size() && text.find_first_of(kDigits) == 0);
+  const std::size_t begin = text.find_last_of(' ') + 1;
+  const std::string_view size = trimmed(text.substr(0, begin));
+  const std::string_view zone = text.substr(begin);
+  const std::size_t digits = zone.find_first_of(kDigits);
+  if (digits == 0 || digits > 2 || zone.find_first_not_of(kDigits, digits) != std::string_view::npos) return false;
+  if (size.empty()) return zone.starts_with("IT");
+  return size.find_first_not_of("0123456789.") == std::string_view::npos;
 }
 
 /// Throws if the tolerance of a distance is written as limits or as a zone of ISO 286.

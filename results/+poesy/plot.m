@@ -1,5 +1,5 @@
 function plot(result, response, figure_file)
-% POESY.PLOT  Draws a ranking of a result of any kind: a bar for each row, with its interval, the largest at the top.
+% POESY.PLOT  Draws a ranking of a result of any kind: a bar for each row, with its interval, as POESY.RANKING sorts.
 %
 %   poesy.plot(result)                                          in a new figure
 %   poesy.plot(result, 'angular_deformation')                   of another response

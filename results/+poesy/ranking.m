@@ -1,5 +1,5 @@
 function ranked = ranking(result, response)
-% POESY.RANKING  What matters most: the rows of result.ranked for one response, the largest first.
+% POESY.RANKING  What matters most: the rows of result.ranked for one response, the largest first; of a sweep the best.
 %
 %   poesy.ranking(result)                          prints the ranking for the response that the study is about
 %   poesy.ranking(result, 'angular_deformation')   for another response
@@ -10,6 +10,7 @@ function ranked = ranking(result, response)
 % without a number come last, and rows with the same number in the order of the result. Without a name it is a response with a
 % limit, the one whose limit is missed most often; without limits the displacement of the tool, without a tool that of the
 % platform; else the first length, or the first that has a number: one that does not vary has no shares.
+% Of a sweep it is the first figure of merit.
   if ~isstruct(result)
     result = poesy.read(result);
   end
@@ -20,7 +21,10 @@ function ranked = ranking(result, response)
     for name = reshape(poesy.internal.leading(result), 1, [])
       first = [first; find(strcmp(all.responses(:), name{1}) & known)];  %#ok<AGROW> a few names
     end
-    first = [first; find(strcmp(all.units(:), 'mm') & known); find(known); 1];
+    if ~strcmp(result.kind, 'sweep')
+      first = [first; find(strcmp(all.units(:), 'mm') & known)];
+    end
+    first = [first; find(known); 1];
     response = all.responses{first(1)};
   end
   r = find(strcmp(all.responses, response));
@@ -28,6 +32,9 @@ function ranked = ranking(result, response)
     error('poesy:response', 'there is no response %s; it has %s', response, strjoin(all.responses', ', '));
   end
   sorted = all.value(:, r);
+  if all.smallest_first(r)
+    sorted = -sorted;
+  end
   sorted(isnan(sorted)) = -Inf;
   [~, order] = sort(sorted, 'descend');
   ranked = struct('kind', result.kind, 'what', all.what, 'response', response, 'unit', all.units{r}, ...

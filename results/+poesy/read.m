@@ -13,6 +13,7 @@ function result = read(source)
 %   names                      {N x 1}  errors, groups, parts, subsets of sources, or rows of errors
 %   responses, units           {R x 1}  the columns: responses (groups of sizes of an identification), and their units: mm, deg
 %   value, low, high           [N x R]  numbers, and their intervals; NaN where there is none
+%   smallest_first             [1 x R]  true where a smaller number is better: costs of a sweep
 % A sensitivity study has index x sigma, a Monte Carlo study S1 (where it has first-order indices), a Sobol' study ST, an
 % allocation each part's share of the cost, a coupling the largest effect over the poses, an identification what each error
 % gives alone (SI), a sweep the figures of merit of each design in the units of poesy show, a calibration each estimate's

@@ -68,7 +68,10 @@ function check_ranking(result)
     ranked = poesy.ranking(result, found.responses{r});
     known = ranked.value(~isnan(ranked.value));
     assert(numel(known) > 0, [result.kind ': nothing is ranked']);
-    assert(issorted(-known), [result.kind ' is not in order']);
+    if ~found.smallest_first(r)
+      known = -known;
+    end
+    assert(issorted(known), [result.kind ' is not in order']);
     assert(all(isnan(ranked.value(numel(known) + 1:end))));
     assert(sort(ranked.order), (1:numel(found.names))');
     assert(ranked.unit, found.units{r});
@@ -141,6 +144,14 @@ function check_sweep()
   check_ranking(result);
   check_figure(result);
   check_against_table(result, 'yield', 'sweep', 'yield', 1);
+  first = poesy.ranking(result);
+  assert({first.response, first.unit}, {'yield', '%'});
+  assert(first.names{1}, 'sigma = 1 mm');
+  is_scatter = strcmp(result.ranked.units(:), 'mm');  % the root mean square, of which the smallest is the best
+  assert(any(is_scatter));
+  assert(result.ranked.smallest_first(:), is_scatter);
+  scatter = poesy.ranking(result, result.ranked.responses{find(is_scatter, 1)});
+  assert(scatter.names{1}, 'sigma = 1 mm');
   ranked = poesy.ranking(result, 'yield');
   assert(all(ranked.low <= ranked.value & ranked.value <= ranked.high));
 end

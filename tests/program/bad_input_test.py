@@ -1,6 +1,6 @@
 """Bad input gives one clear sentence with its place, exit code 2, and no file; an existing result stays."""
 
-from poesy_program import AN_OLDER_RESULT, STUDY, ProgramTest, main
+from poesy_program import AN_OLDER_RESULT, MECHANISMS, STUDY, ProgramTest, main
 
 
 def changed(old, new):
@@ -195,6 +195,14 @@ class BadInput(ProgramTest):
                             ("geometry.l_A=60,70", "after the last number: geometry.l_A=60,70mm, or geometry.l_A=60,70m\n"),
                             ("l_A=60:80:10mm", "names a parameter of the mechanism's geometry; write geometry.l_A=60:80:10mm\n")):
             self.assertIn(said, self.said_of("sweep", "s.toml", "--set", wrong))
+
+    def test_sweeps_of_angles(self):
+        """Degrees come first also for small numbers."""
+        self.write("m.toml", (MECHANISMS / "bell-crank.toml").read_text())
+        self.write("s.toml", 'format = "poesy-study"\nversion = 1\nmechanism.file = "m.toml"\nposes.count = 2\n'
+                             '[analysis]\nkind = "monte-carlo"\ndraws = "per pose"\n')
+        self.assertIn("after the last number: geometry.alpha=1,2,5deg, or geometry.alpha=1,2,5rad\n",
+                      self.said_of("sweep", "s.toml", "--set", "geometry.alpha=1,2,5"))
 
     def test_tables_of_other_programs(self):
         self.write("s.toml", changed("count = 6", 'select = "file"\nfile = "p.csv"'))

@@ -127,6 +127,19 @@ class CalibratedStudy(ProgramTest):
         self.write("study.toml", asked.replace("RESPONSE", "tip_position").replace("calibrated = true\n", ""))
         self.assertNotIn("metric_points", self.poesy("check", "study.toml").stderr.decode())
 
+    def test_points_of_a_platform_with_six_freedoms_are_not_told(self):
+        """The correction there leaves nothing at any point to first order."""
+        mechanism = (self.folder / "hexapod.toml").read_text()
+        away = mechanism.replace("[platform]\n", '[platform]\ntool = [0, 0, "h + 500 mm"]\n')
+        self.assertNotEqual(away, mechanism)
+        self.write("hexapod.toml", away)
+        study = (FILES / "hexapod-measured.toml").read_text().split("[analysis.calibration]")[0]
+        study += 'poses = { count = 2 }\n[analysis]\nkind = "monte-carlo"\ndraws = "per machine"\n'
+        self.write("study.toml", study + 'samples = 20\ncalibrated = true\nlimits.tip_position = "1 mm"\n')
+        done = self.poesy("check", "study.toml")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn(b"metric_points", done.stderr)
+
     def test_same_bits(self):
         """On threads and shards, after a stop, and as the continuation of a shorter study."""
         text = with_calibration(["zero_*", "radius"], machines=130)  # three units of 40 and a smaller one

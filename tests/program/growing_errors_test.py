@@ -224,6 +224,14 @@ class GrowingErrors(ProgramTest):
         self.write("machine.toml", text + plain)
         np.testing.assert_allclose(found, self.displacements(["twist", "yaw"], (2e-3 * way, 1e-3 * way)), atol=1e-14)
 
+    def test_a_size_in_the_place_of_a_distribution(self):
+        """The message has a line that can be copied."""
+        self.linear_delta()
+        head = 'format = "poesy-study"\nversion = 1\nmechanism.file = "machine.toml"\nposes.count = 2\n'
+        self.write("study.toml", head + 'errors.relative = "+-0.2 %"\n[analysis]\nkind = "monte-carlo"\n'
+                                        'draws = "per pose"\n')
+        self.refuses("study.toml", 'write a distribution, e.g. { distribution = "uniform", half_width = "0.1 %" }')
+
     def test_kinds_that_set_sizes_by_dimension(self):
         """They have a size for lengths and one for angles, and none for a number: refused, not left out."""
         text = (GALLERY / "tripteron" / "tripteron.toml").read_text()

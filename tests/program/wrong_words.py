@@ -243,6 +243,8 @@ WRONG_STUDIES = [
      'not belong to the distribution "normal"; write sigma = ... instead, or distribution = "uniform"'),
     ('linear = { distribution = "uniform", limits = ["-20 um", "5 um"] }', 'linear = "+-0.02 mm"',
      "is the text '+-0.02 mm'; write a distribution, e.g. { distribution = \"uniform\", half_width = \"0.02 mm\" }"),
+    ('linear = { distribution = "uniform", limits = ["-20 um", "5 um"] }', 'linear = "-0.05 mm"',
+     "is the text '-0.05 mm'; write a distribution, e.g. { distribution = \"uniform\", half_width = \"0.02 mm\" }"),
     ('linear = { distribution = "uniform", limits = ["-20 um", "5 um"] }', 'tolerance = "0.02 mm"',
      "unknown key 'tolerance' in [errors]; write linear = { distribution = \"uniform\", half_width = \"0.02 mm\" }, and"),
     ('linear = { distribution = "uniform", limits = ["-20 um", "5 um"] }', 'linear = { distribution = "uniform", limits = ["5 um", "-20 um"] }',

@@ -28,7 +28,7 @@ function found = quantities_of_groups(result)
     case 'sweep'
       sweep = groups.sweep;
       found = struct('names', {designs(sweep)}, 'responses', {sweep.quantity}, 'units', {sweep.quantity_unit}, ...
-                     'value', sweep.merit, 'low', sweep.low, 'high', sweep.high);
+                     'value', sweep.merit, 'low', sweep.low, 'high', sweep.high, 'from_best', sweep.from_best);
     case 'calibration'
       fit = groups.calibration;
       found = struct('names', {fit.fitted}, 'responses', {{'all'}}, 'units', {{'1'}}, 'value', abs(fit.estimate(:)) ./ fit.sd(:));

@@ -66,7 +66,7 @@ function found = merits(designs)
   each = @(ending) cell2mat(cellfun(@(name) column(designs, [name ending]), names', 'UniformOutput', false));
   units = cellfun(@(name) designs.units(strcmp(designs.columns, name)), names);
   found = struct('names', {designs.rows}, 'responses', {names}, 'units', {units}, 'value', each(''), 'low', each(' low'), ...
-                 'high', each(' high'));
+                 'high', each(' high'), 'from_best', each(' from best'));
 end
 
 % A line for each pose and row of errors: case by case, else pose by pose. Rows may be paired with poses one by one.

@@ -33,10 +33,15 @@ function table = ranked(kind, found)
     found.low = NaN(size(found.value));
     found.high = found.low;
   end
+  smallest_first = false(1, size(found.value, 2));
+  if isfield(found, 'from_best')  % values less that of the best row: positive where the smallest is the best
+    smallest_first = any(found.from_best > 0, 1);
+  end
   [scale, units] = poesy.internal.readable(found.units);
   scale = ones(size(found.value, 1), 1) * scale;
   table = struct('what', what, 'names', {found.names(:)}, 'responses', {found.responses(:)}, 'units', {units}, ...
-                 'value', found.value .* scale, 'low', found.low .* scale, 'high', found.high .* scale);
+                 'value', found.value .* scale, 'low', found.low .* scale, 'high', found.high .* scale, ...
+                 'smallest_first', smallest_first);
 end
 
 function names = repeated(subsets, sizes)

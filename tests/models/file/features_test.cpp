@@ -71,6 +71,19 @@ TEST(Features, SayWhichErrorsTheirZonesLimit) {
   EXPECT_EQ(mechanism.factors.size(), 78u);
 }
 
+TEST(Features, HaveTolerancesByExpressions) {
+  const auto tolerance = [](const std::string& written) {
+    const std::string text = replaced(text_of(kName), {"geometry = { ", "geometry = { t1 = \"0.01 mm\", "});
+    return problem_of(replaced(text, {"tolerance = \"0.02 mm\"", "tolerance = \"" + written + "\""}));
+  };
+  for (const std::string written : {"0.5 * t1", "0.01 mm + t1", "2 * t1", "+1e-5 m", "+0.05 mm + 2 * t1"}) {
+    EXPECT_EQ(tolerance(written), "read") << written;
+  }
+  for (const std::string written : {"905 js7", "905.5 IT7", "+0.05 mm -0.02 mm", "+1e-5 / -2e-5 m"}) {
+    EXPECT_NE(tolerance(written).find(kHalfWidth), std::string::npos) << written;
+  }
+}
+
 TEST(Features, AreLooseByAClearance) {
   const auto with = [](const std::string& clearance) {
     return replaced(text_of(kName),
