@@ -110,7 +110,6 @@ int check(const std::string& path) {
   for (const std::string& note : study_notes(study)) print("# " + note + "\n");
   for (const std::string& line : model->mobility()) print("# mobility: " + line + "\n");
   for (const std::string& remark : model->remarks()) print("# " + remark + "\n");
-  for (const std::string& doubt : mechanism_doubts(study.mechanism, *model)) print("# hint: " + doubt + "\n");
   for (const std::string& unusual : model->unusual_errors()) print("# hint: " + asked_back(unusual) + "\n");
   print(trajectory_line(poses, study.model()));
   for (const RejectedPoses& rejected : poses.rejected) {

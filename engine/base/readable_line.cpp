@@ -25,4 +25,10 @@ std::string with_readable_quantities(std::string_view line) {
   return text;
 }
 
+std::pair<std::string, std::string> with_readable_quantities(std::pair<std::string, std::string> lines) {
+  std::pair<std::string, std::string> readable{with_readable_quantities(lines.first),
+                                               with_readable_quantities(lines.second)};
+  return readable.first == readable.second ? lines : readable;
+}
+
 }  // namespace poesy

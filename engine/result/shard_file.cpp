@@ -66,10 +66,8 @@ void check_version(const StoredShard& shard) {
 
 void check_same_study(const StoredShard& shard, const StoredShard& first) {
   if (shard.study_text != first.study_text) {
-    const auto [there, here] = first_difference(shard.study_text, first.study_text);
-    refuse(shard,
-           fmt::format("is of another study: it has {} where {} has {}", with_readable_quantities(there), first.path,
-                       with_readable_quantities(here)),
+    const auto [there, here] = with_readable_quantities(first_difference(shard.study_text, first.study_text));
+    refuse(shard, fmt::format("is of another study: it has {} where {} has {}", there, first.path, here),
            "merge shards of one study");
   }
   if (shard.mechanism_text != first.mechanism_text) {

@@ -101,18 +101,20 @@ std::string remedy_for(const StudyTable& table, const StudyKey& refused, std::st
 struct ExpectedKey {
   std::string_view table;   ///< name of the table
   std::string_view key;     ///< name of the key
+  std::string_view beside;  ///< key that the table has, by which it differs from other files' tables of this name
   std::string_view remedy;  ///< what to write instead
 };
 
 constexpr std::array kExpectedKeys{ExpectedKey{
-    "errors", "tolerance",
+    "errors", "tolerance", "linear",
     "write linear = { distribution = \"uniform\", half_width = \"0.02 mm\" }, and angular = { distribution = "
     "\"uniform\", half_width = \"0.02 deg\" }"}};
 
 /// What to write instead of an unknown key of a table.
 std::string remedy_for_unknown(std::string_view table, std::string_view key, std::span<const std::string_view> known) {
-  const auto expected =
-      std::ranges::find_if(kExpectedKeys, [&](const ExpectedKey& one) { return one.table == table && one.key == key; });
+  const auto expected = std::ranges::find_if(kExpectedKeys, [&](const ExpectedKey& one) {
+    return one.table == table && one.key == key && std::ranges::find(known, one.beside) != known.end();
+  });
   return expected == kExpectedKeys.end() ? suggestion(key, known) : std::string(expected->remedy);
 }
 

@@ -158,11 +158,9 @@ void check_continues(const CheckpointIdentity& run, const CheckpointIdentity& ch
         adaptive(run) ? "has a fixed number of samples, and this study takes as many as it needs"
                       : "takes as many samples as it needs, and this study a fixed number",
         "give the samples as they were");
-  const auto [there, here] = first_difference(checkpoint.study, run.study);
+  const auto [there, here] = with_readable_quantities(first_difference(checkpoint.study, run.study));
   check(checkpoint.study == run.study,
-        fmt::format("is of another study: it has {} where this study has {}", with_readable_quantities(there),
-                    with_readable_quantities(here)),
-        "give the study as it was");
+        fmt::format("is of another study: it has {} where this study has {}", there, here), "give the study as it was");
   check(checkpoint.poses == run.poses, "is of other poses under the same name", "give the poses as they were");
   const auto part = [](const std::string& shard) {
     return shard.empty() ? "the whole study" : "shard " + printable(shard);

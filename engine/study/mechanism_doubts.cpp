@@ -143,10 +143,9 @@ std::string correction_doubt(const Study& study, const Model& model) {
       if (!depends_on(point.name, limit.response, study)) continue;
       return fmt::format(
           "calibrated = true corrects the drives so that the platform's points (metric_points) are best, but the limit "
-          "of {} is on a point that is {} away from them (root mean square), for which a calibration can be better; "
+          "of {} is on a point that they are not around, for which a calibration can be better; "
           "put metric_points around {}",
-          study.model().responses[limit.response].name, readable_text({away, Dimension::length}, 4),
-          point.name == "tip" ? "the tool" : "'" + point.name + "'");
+          study.model().responses[limit.response].name, point.name == "tip" ? "the tool" : "'" + point.name + "'");
     }
   }
   return {};

@@ -124,6 +124,11 @@ class CalibratedStudy(ProgramTest):
                     said = self.poesy(*command).stderr.decode()
                     self.assertEqual(told in said, is_told, said)
         self.write("m.toml", mechanism)
+        self.write("study.toml", asked.replace("RESPONSE", "tip_position"))
+        sweep = ("sweep", "study.toml", "--set", "geometry.t=70,80mm", "-o", "s.h5", "--quiet")
+        swept = self.poesy(*sweep).stderr.decode()
+        self.assertEqual(swept.count(told), 1, swept)
+        self.write("m.toml", mechanism)
         self.write("study.toml", asked.replace("RESPONSE", "tip_position").replace("calibrated = true\n", ""))
         self.assertNotIn("metric_points", self.poesy("check", "study.toml").stderr.decode())
 

@@ -84,6 +84,13 @@ TEST(Features, HaveTolerancesByExpressions) {
   }
 }
 
+TEST(Features, AdviceOnAToleranceAmongErrorsIsOfKeysOfTheFile) {
+  const std::string problem = problem_of(text_of(kName) + "\n[errors]\ntolerance = \"0.02 mm\"\n");
+  EXPECT_NE(problem.find("unknown key 'tolerance' in [errors]; "), std::string::npos) << problem;
+  EXPECT_NE(problem.find("frames"), std::string::npos) << problem;
+  EXPECT_EQ(problem.find("linear"), std::string::npos) << problem;
+}
+
 TEST(Features, AreLooseByAClearance) {
   const auto with = [](const std::string& clearance) {
     return replaced(text_of(kName),
