@@ -38,7 +38,7 @@ struct KnownColumns {
   std::vector<KnownColumn> numbers;  ///< columns that are read
   Names facts = {};                  ///< columns that `poesy export` writes and reading ignores
   Names labels = {};                 ///< titles of a column of labels; a table may have one such column
-  bool has_texts = false;            ///< true if columns of text are allowed; they are ignored
+  bool has_texts = false;            ///< true if columns of text are allowed; one of them may name the rows
   std::string_view what;             ///< what a column of numbers is, for messages: "pose coordinate"
 };
 
@@ -288,7 +288,8 @@ bool are_labels(const std::vector<std::string_view>& cells) {
 }
 
 /// The labels of the rows of a table. If no column is a column of labels, the first column of text that may name the
-/// rows does so; columns with titles that people use for such names come first. Empty if there is no such column.
+/// rows does so; columns with titles that people use for such names come first. With another title it takes two rows,
+/// because the text of one row differs from no other. Empty if there is no such column.
 RowLabels labels_of(std::span<const TableColumn> columns, Rows rows) {
   using Role = TableColumn::Role;
   const auto label = std::ranges::find(columns, Role::label, &TableColumn::role);
@@ -297,6 +298,7 @@ RowLabels labels_of(std::span<const TableColumn> columns, Rows rows) {
     for (const TableColumn& column : columns) {
       if (column.role != Role::text || column.may_name_rows != by_title) continue;
       const std::vector<std::string_view>& cells = rows.cells_of_text[column.name];
+      if (!by_title && cells.size() < 2) continue;
       if (are_labels(cells)) return {"part", {cells.begin(), cells.end()}};
     }
   }
@@ -314,9 +316,12 @@ Rows read_rows(CsvLines& lines, std::span<const TableColumn> columns, const Know
   while (!lines.done()) read_row(lines, columns, known, check, rows);
   for (const TableColumn& column : columns) {
     if (column.role != TableColumn::Role::text || rows.texts.contains(column.name)) continue;
-    if (!column.may_name_rows || !are_labels(rows.cells_of_text[column.name])) {
-      refuse_unknown(column.place, column.name, known);
-    }
+    if (!column.may_name_rows) refuse_unknown(column.place, column.name, known);
+    if (are_labels(rows.cells_of_text[column.name])) continue;
+    throw InputError(column.place,
+                     fmt::format("column '{}' does not name the rows, because cells are equal, empty, or no names",
+                                 printable(column.name)),
+                     "give each row a name of its own, or delete the column");
   }
   return rows;
 }

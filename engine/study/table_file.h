@@ -52,11 +52,13 @@ TimedPoints read_trajectory(const std::string& path, const ModelDescription& mod
 
 /// Reads errors from a CSV file. The first line names factors of the model, any subset in any order, with units as in
 /// read_poses(); each further line is a sample. A column "part" or "name" gives labels to the lines, or, if there is
-/// none, one with a title such as "serial", which is read as "part"; labels must differ and follow label_problem(). The
-/// columns "sample", "pose" and "case", which `poesy export` writes into errors.csv, are ignored. Columns of text, such
-/// as "operator", are ignored, too. A column is one of text if at least one of its cells has a letter and no cell
-/// begins like a number. Throws as read_poses() does, and InputError for an unknown factor and for an error that is too
-/// large (Model::error_bound).
+/// none, one with a title such as "serial", which is read as "part"; labels must differ and follow label_problem(). If
+/// there is none of these, the first column of texts that may be labels names the lines, and is called "part": first
+/// one with a title such as "Part No.", otherwise one of at least two lines. The columns "sample", "pose" and "case",
+/// which `poesy export` writes into errors.csv, are ignored, and so are other columns of text, such as "operator". A
+/// column is one of text if at least one of its cells has a letter and no cell begins like a number; with a title such
+/// as "Part No." it may have any labels. Throws as read_poses() does, and InputError for an unknown factor, for a
+/// column with such a title whose numbers are no labels, and for an error that is too large (Model::error_bound).
 ErrorTable read_errors(const std::string& path, const Model& model);
 
 /// Reads one column of measured values from a CSV file. The first line names the columns. The column is found by its

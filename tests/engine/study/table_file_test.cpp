@@ -141,6 +141,12 @@ TEST(ReadErrors, TextsThatDoNotDifferNameNoRows) {
   EXPECT_TRUE(labels_in("Inspector,delta_1\nX,0\n,0\n").empty());
 }
 
+TEST(ReadErrors, OneRowHasANameByItsTitleOnly) {
+  EXPECT_TRUE(labels_in("operator,delta_1\nBob,0\n").empty());
+  EXPECT_EQ(labels_in("operator,delta_1\nBob,0\nEve,0\n"), (std::vector<std::string>{"Bob", "Eve"}));
+  EXPECT_EQ(labels_in("operator,Machine,delta_1\nBob,M1,0\n"), (std::vector<std::string>{"M1"}));
+}
+
 TEST(ReadErrors, CellsMayBeInQuotes) {
   const test::TempFolder folder;
   const std::string text =
@@ -279,7 +285,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadTable{"Dates", "part,^date,delta_1\na,2026-03-01,0\n", {"'date'", "or delete it, or call it 'part'"}},
         BadTable{"NumbersThatNameNothing",
                  "^Part No.,delta_1\n17,0\n17,0\n",
-                 {"'Part No.'", "or delete it, or call it 'part'"}}),
+                 {"'Part No.'", "give each row a name of its own, or delete the column"}}),
     kName);
 
 struct BadLabel {
