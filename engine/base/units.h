@@ -26,7 +26,7 @@ struct Unit {
 std::span<const Unit> units();
 
 /// The unit with this name or one of the further spellings: a micro sign (U+00B5) or Greek mu (U+03BC) before m or J, a
-/// degree sign (U+00B0). Null if there is no such unit.
+/// degree sign (U+00B0), "inch". Null if there is no such unit.
 const Unit* find_unit(std::string_view spelling);
 
 /// The names of the units of one dimension, or of all dimensions, as a list: "m, cm, mm, um, in, mil, thou".

@@ -9,8 +9,8 @@ namespace poesy {
 
 /// The text that describes the responses of a calibrated study to users, as a noun phrase.
 inline constexpr std::string_view kLeftByCalibration =
-    "what remains with the drives corrected at each pose so that the platform's points (metric_points) are best; for "
-    "another point, such as the tool, a calibration can be better";
+    "what remains with the drives corrected at each pose so that the platform's points (metric_points of a mechanism "
+    "from a file) are best; for another point, such as the tool, a calibration can be better";
 
 /// A model with the calibrated_evaluator() of the given model as its evaluator. Its responses are those that remain
 /// after the correction of the actuators that is best for the platform's points (metric_points()). It has no trace,

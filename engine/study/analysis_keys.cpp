@@ -267,10 +267,11 @@ std::vector<StudyRow> shared_rows() {
       StudyRow{.name = "calibrated",
                .value = {.type = "true or false"},
                .usual = "`false`",
-               .meaning = "Whether responses are what remains with the drives corrected at each pose so that the "
-                          "platform's points (`metric_points` of its file) are best. For another point, such as the "
-                          "tool, a calibration can be better; so put `metric_points` around the point with the limit. "
-                          "For mechanisms of which sensitivity studies say what calibration can remove.",
+               .meaning =
+                   "Whether responses are what remains with the drives corrected at each pose so that the "
+                   "platform's points (`metric_points` of a mechanism from a file) are best. For another "
+                   "point, such as the tool, a calibration can be better; so put `metric_points` around the "
+                   "point with the limit. For mechanisms of which sensitivity studies say what calibration can remove.",
                .reader = read_calibrated,
                .lines = calibrated_line,
                .shown = shown_calibrated},

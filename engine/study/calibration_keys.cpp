@@ -130,16 +130,17 @@ void read_prior(const StudyValue& value, CalibrationTable& table, const Calibrat
 
 /// Throws InputError if the element names a position, such as tip_x, that the mechanism reports but that is no
 /// coordinate of its poses. known: all coordinates that a controller may command.
-void refuse_position(const StudyValue& element, const ModelDescription& model,
-                     const std::vector<std::string_view>& known) {
+void refuse_position(const StudyValue& element, const Study& study, const std::vector<std::string_view>& known) {
+  const ModelDescription& model = study.model();
   const std::string word = element.text();
   const auto response = std::ranges::find(model.responses, word, &Response::name);
   const bool is_position =
       response != model.responses.end() && response->dimension == Dimension::length && !response->is_magnitude();
   if (!is_position || std::ranges::find(known, word) != known.end()) return;
   element.fail(fmt::format("is '{}', but the coordinates of this mechanism are {}", word, fmt::join(known, ", ")),
-               "use x, y, z as coordinates of the platform in the mechanism's file, so that a controller can command a "
-               "position");
+               study.mechanism.file ? "use x, y, z as coordinates of the platform in the mechanism's file, so that a "
+                                      "controller can command a position"
+                                    : "name some of these");
 }
 
 void read_coordinates(const StudyValue& value, CalibrationTable& table, const CalibrationReading& at) {
@@ -153,7 +154,7 @@ void read_coordinates(const StudyValue& value, CalibrationTable& table, const Ca
     }
   }
   for (const StudyValue& element : value.list()) {
-    refuse_position(element, model, known);
+    refuse_position(element, at.study, known);
     const std::string word(known[element.word(known)]);
     if (std::ranges::find(table.coordinates, word) != table.coordinates.end()) {
       element.fail("names '" + word + "' a second time", "remove one of them");

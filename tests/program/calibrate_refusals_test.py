@@ -189,6 +189,12 @@ class Refusals(ProgramTest):
         self.assertIn("study.toml:8:16: ", said)
         self.assertIn("is 'tip_x', but the coordinates of this mechanism are z, rx, ry", said)
         self.assertIn("use x, y, z as coordinates of the platform in the mechanism's file", said)
+        built_in = STUDY.replace('file = "delta-puu.toml"', 'model = "3-prs"')
+        built_in = built_in.replace(FIT, 'fit = ["a_x_1"]\ncoordinates = ["x", "alpha", "beta"]')
+        built_in = built_in.replace(NOISE, 'noise = { z = "10 um" }')
+        said = self.refused(built_in, "tip_x,tip_y,tip_z,deviation_z [um]\n0,0,0.8,1\n")
+        self.assertIn("is 'x', but the coordinates of this mechanism are alpha, beta, z, ", said)
+        self.assertNotIn("the mechanism's file", said)
 
     def test_lengths_and_angles_without_noise(self):
         study = STUDY.replace(NOISE, "noise = { z = 0, theta_x = 0 }")

@@ -136,7 +136,8 @@ const Group<CalibrationYields> kCalibrationYields{
      {"uncalibrated_ci_low", &CalibrationYields::uncalibrated_ci_low, "1", "Lower" + kPearson},
      {"uncalibrated_ci_high", &CalibrationYields::uncalibrated_ci_high, "1", "Upper" + kPearson},
      {"best", &CalibrationYields::best, "1",
-      "The yield after the best correction of the actuators at each pose; NaN where the model does not know it"},
+      "The yield after the correction of the actuators at each pose that is best for metric_points; NaN where the "
+      "model does not know it"},
      {"best_ci_low", &CalibrationYields::best_ci_low, "1", "Lower" + kPearson},
      {"best_ci_high", &CalibrationYields::best_ci_high, "1", "Upper" + kPearson},
      {"not_fitted", &CalibrationYields::not_fitted, "1",

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/base/contract.h"
 #include "engine/base/units.h"
 
 namespace poesy {
@@ -16,7 +17,10 @@ constexpr double kFullTurn = 2.0 * std::numbers::pi;
 constexpr double kRounding = 1e-9;  ///< tolerance at the ends of a workspace, as a share of its range
 
 /// The range of coordinate c in the workspace that the mechanism states.
-Range own_range(const ModelDescription& model, std::size_t c) { return {model.pose_lower[c], model.pose_upper[c]}; }
+Range own_range(const ModelDescription& model, std::size_t c) {
+  POESY_EXPECTS(c < model.pose_lower.size() && c < model.pose_upper.size());
+  return {model.pose_lower[c], model.pose_upper[c]};
+}
 
 std::string range_text(const Range& range, Dimension dimension) {
   return fmt::format("from {} to {}", readable_text({range.lower, dimension}, kDigits),

@@ -58,7 +58,8 @@ TEST(Calibrated, IsAKeyOfAnAnalysis) {
   EXPECT_TRUE(corrected.mechanism.calibrated);
   EXPECT_EQ(response_of(corrected), 0.5 * response_of(plain));
   EXPECT_EQ(calibration_text(plain), "");
-  EXPECT_NE(calibration_text(corrected).find("so that the platform's points (metric_points) are best"),
+  EXPECT_NE(calibration_text(corrected).find(
+                "so that the platform's points (metric_points of a mechanism from a file) are best"),
             std::string::npos);
 }
 

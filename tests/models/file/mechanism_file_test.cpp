@@ -192,10 +192,6 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
            "m.toml:22:58: limb[0].joints[1].axis is given besides `to`; remove one of them"},
           {"to = \"S\", actuated", "to = \"S\", aktuated",
            "m.toml:22:51: unknown key 'aktuated' in [limb[0].joints[1]]; did you mean 'actuated'?"},
-          {", actuated = true }", " }",
-           "m.toml:23:3: the drives do not hold the platform, which has 3 freedoms and 0 drives: joint 'S' of limb 1 "
-           "is loose, and the platform turns about (-0.35, -0.94, 0); write actuated = true at one more joint, or "
-           "correct the axes"},
           {"actuated = true", "actuated = \"yes\"",
            "m.toml:22:62: limb[0].joints[1].actuated is the text 'yes'; write true or false without quotes"},
           {"actuated = true", "actuated = \"motor 1\"",
@@ -220,11 +216,6 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
            "m.toml:23:49: limb[0].joints[2].axis does not belong to type = \"S\"; remove it"},
           {"\"S\", at = [\"c\", 0, \"h\"] }", "\"S\", at = [\"c\", 0, \"h\"], actuated = true }",
            "m.toml:23:49: limb[0].joints[2].actuated does not belong to type = \"S\"; remove it"},
-          {"\"S\", at = [\"c\", 0, \"h\"] }", "\"S\", at = [0, 0, \"h\"] }",
-           "m.toml:23:3: the drives do not hold the platform, which has 4 freedoms and 3 drives: joint 'S' of limb 3 "
-           "is "
-           "loose, and the platform turns about (-0.77, 0.64, 0); write actuated = true at one more joint, or correct "
-           "the axes"},
           {"joints = [", "joints = []\nx = [",
            "m.toml:21:1: unknown key 'x' in [limb[0]]; known: name, from, to, copies, points, joints, links, features, "
            "clearances, "
@@ -266,6 +257,21 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
            "m.toml:14:15: platform.coordinates are not independent: rz follows from the others, and the platform has 3 "
            "freedoms; remove it, take another, or correct the axes of the joints"},
       });
+}
+
+/// The motion of the platform is one of several possible ones, so its axis may differ between computers.
+TEST(MechanismFile, RefusesDrivesThatDoNotHoldThePlatform) {
+  const auto expect = [](const Wrong& wrong) {
+    const std::string problem = problem_of(replaced(text_of("rps3"), wrong));
+    EXPECT_TRUE(problem.starts_with(wrong.message)) << problem;
+    EXPECT_TRUE(problem.ends_with("; write actuated = true at one more joint, or correct the axes")) << problem;
+  };
+  expect({", actuated = true }", " }",
+          "m.toml:23:3: the drives do not hold the platform, which has 3 freedoms and 0 drives: joint 'S' of limb 1 is "
+          "loose, "});
+  expect({"\"S\", at = [\"c\", 0, \"h\"] }", "\"S\", at = [0, 0, \"h\"] }",
+          "m.toml:23:3: the drives do not hold the platform, which has 4 freedoms and 3 drives: joint 'S' of limb 3 is "
+          "loose, "});
 }
 
 TEST(MechanismFile, RefusesWhatIsWrongInOthers) {
