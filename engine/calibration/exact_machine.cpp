@@ -12,20 +12,12 @@ namespace {
 
 Vector3 vector_of(const SketchVector& vector) { return {vector[0], vector[1], vector[2]}; }
 
-/// The first limb that ends at the platform and has frames; none if the sketch has no such limb.
-std::optional<std::size_t> limb_at_platform(const Sketch& sketch) {
-  for (std::size_t limb = 0; limb < sketch.frames.size(); ++limb) {
-    if (sketch.ends_of(limb).to == 1 && !sketch.frames[limb].empty()) return limb;
-  }
-  return std::nullopt;
-}
-
-/// The axes of the platform's frame in a sketch, as columns. Precondition: a limb of the sketch ends at the platform
-/// and has frames.
+/// The axes of the platform's frame in a sketch, as columns. Precondition: the sketch has that frame.
 Matrix3 axes_of(const Sketch& sketch) {
-  const SketchedFrame& frame = sketch.frames[*limb_at_platform(sketch)].back();
+  const SketchedFrame* const frame = sketch.platform_frame();
+  POESY_EXPECTS(frame != nullptr);
   Matrix3 axes;
-  for (Eigen::Index k = 0; k < 3; ++k) axes.col(k) = vector_of(frame.axes[static_cast<std::size_t>(k)]);
+  for (Eigen::Index k = 0; k < 3; ++k) axes.col(k) = vector_of(frame->axes[static_cast<std::size_t>(k)]);
   return axes;
 }
 
@@ -67,7 +59,7 @@ ExactMachine::ExactMachine(const Model& model, const SolverOptions& solver)
     responses_[c] = static_cast<std::size_t>(found - known.begin());
   }
   const std::optional<Sketch> home = model.sketch({});
-  if (!home || !limb_at_platform(*home)) throw std::invalid_argument("does not say where its platform is");
+  if (!home || home->platform_frame() == nullptr) throw std::invalid_argument("does not say where its platform is");
   home_ = axes_of(*home);
   reach_ = reach_of(*home);
   has_tool_ = !home->tool.empty();

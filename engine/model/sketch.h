@@ -103,6 +103,15 @@ struct Sketch {
 
   /// The bodies at the ends of a limb.
   SketchedEnds ends_of(std::size_t limb) const { return ends.empty() ? SketchedEnds{} : ends[limb]; }
+
+  /// The frame of the platform, of which only the axes are meant: its origin may be at a joint. Null if no limb with
+  /// frames ends at the platform.
+  const SketchedFrame* platform_frame() const {
+    for (std::size_t limb = 0; limb < frames.size(); ++limb) {
+      if (ends_of(limb).to == 1 && !frames[limb].empty()) return &frames[limb].back();
+    }
+    return nullptr;
+  }
 };
 
 }  // namespace poesy

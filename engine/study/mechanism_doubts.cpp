@@ -45,14 +45,6 @@ Vector in_platform(const SketchVector& point, const Sketch& home, const Sketched
   return found;
 }
 
-/// The frame of the platform at home, of which only the axes are meant; null if no limb ends at the platform.
-const SketchedFrame* platform_of(const Sketch& home) {
-  for (std::size_t limb = 0; limb < home.frames.size(); ++limb) {
-    if (home.ends_of(limb).to == 1 && !home.frames[limb].empty()) return &home.frames[limb].back();
-  }
-  return nullptr;
-}
-
 /// The points of the platform whose displacements have responses of their own: the tool as "tip", and named points.
 std::vector<SketchedPoint> points_with_responses(const Sketch& home) {
   std::vector<SketchedPoint> points = home.points;
@@ -134,7 +126,7 @@ std::string correction_doubt(const Study& study, const Model& model) {
   const std::vector<PlatformPoint> corrected = model.metric_points();
   if (!study.mechanism.calibrated || !study.mechanism.file || corrected.empty()) return {};
   const std::optional<Sketch> home = model.sketch({});
-  const SketchedFrame* const platform = home ? platform_of(*home) : nullptr;
+  const SketchedFrame* const platform = home ? home->platform_frame() : nullptr;
   if (platform == nullptr) return {};
   for (const SketchedPoint& point : points_with_responses(*home)) {
     const double away = rms_distance(corrected, in_platform(point.point, *home, *platform));
