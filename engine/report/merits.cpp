@@ -148,6 +148,11 @@ std::string merits_caption(std::span<const std::vector<Merit>> results, const st
   return fmt::format("Which is better: no verdict on the {}, because the {} differ", first, topics_text(others));
 }
 
+/// Poses are from tables if those of one of the results are.
+PosesFrom poses_from(const ReportKind& kind, const StoredResult& a, const StoredResult& b) {
+  return kind.words(a).own_poses && kind.words(b).own_poses ? PosesFrom::study : PosesFrom::table;
+}
+
 }  // namespace
 
 char letter_of(std::size_t result) {
@@ -187,7 +192,8 @@ std::vector<std::vector<Merit>> compared_merits(const ReportKind& kind, std::spa
   std::vector<std::vector<Merit>> found;
   for (const StoredResult* result : results) {
     found.push_back(kind.merits(*result, response));
-    for (Merit& merit : found.back()) merit.others = other_requirements(*results.front(), *result, merit.what);
+    const PosesFrom poses = poses_from(kind, *results.front(), *result);
+    for (Merit& merit : found.back()) merit.others = other_requirements(*results.front(), *result, merit.what, poses);
   }
   return found;
 }

@@ -15,11 +15,15 @@ namespace {
 
 constexpr std::string_view kPoses = "poses";
 constexpr std::string_view kDrawn = "draws";
+constexpr std::string_view kMetrics = "metrics";
 
 /// Whether `setting` is the setting or section `name`, or belongs to it.
 bool is_of(std::string_view setting, std::string_view name) {
   return setting.starts_with(name) && (setting.size() == name.size() || setting[name.size()] == '.');
 }
+
+/// Whether a figure of merit depends on limits that machines are judged by.
+bool judges_machines(std::string_view merit) { return merit == kYieldMerit || merit == kCostMerit; }
 
 /// The value of a trajectory without its number of poses: "file = path.csv, time = [0 s, 2 s]".
 std::string without_points(std::string value) {
@@ -29,18 +33,23 @@ std::string without_points(std::string value) {
   return value.erase(begin, end == std::string::npos ? end : end + 2 - begin);
 }
 
-/// The value of a setting as far as it is a requirement.
-std::string required_value(const std::string& name, const std::string& value) {
-  return name == "poses.trajectory" ? without_points(value) : value;
-}
-
-/// The settings of a result on which the figure of merit depends, with their values.
+/// The settings of a result on which the figure of merit depends, with their values. Metrics and draws of errors are
+/// left out, because the results themselves state them.
 std::map<std::string, std::string> required_settings(const StoredResult& result, std::string_view merit) {
   std::map<std::string, std::string> list;
   for (const auto& [name, value] : readable_settings(result.study_text)) {
-    if (!required_by(name, merit).empty()) list.emplace(name, required_value(name, value));
+    const std::string_view topic = required_by(name, merit);
+    if (!topic.empty() && topic != kMetrics && !is_of(name, "errors")) list.emplace(name, value);
   }
   return list;
+}
+
+/// Whether a setting of the poses explains that the poses of two results differ.
+bool explains_poses(const std::string& name, const std::string& in_a, const std::string& in_b) {
+  if (required_value(name, in_a) != required_value(name, in_b)) return true;
+  // A file may have been changed, so its name says nothing. If the numbers of points differ, they explain it.
+  const bool is_of_file = name == "poses.file" || (name == "poses.trajectory" && in_a.find("file = ") != in_a.npos);
+  return is_of_file && in_a == in_b;
 }
 
 /// Whether result `of` draws its error p anew at each pose.
@@ -68,23 +77,31 @@ void add_draws_of_errors(const StoredResult& a, const StoredResult& b, std::vect
 std::string other_text(const OtherRequirement& other, char letter) {
   constexpr std::size_t kLong = 40;
   if (std::max(other.in_a.size(), other.in_b.size()) > kLong) return other.name;
+  if (other.in_a.empty() && other.in_b.empty()) return other.name;
   const auto text = [](const std::string& value) { return value.empty() ? "none" : value; };
   return fmt::format("{}: {} in A, {} in {}", other.name, text(other.in_a), text(other.in_b), letter);
 }
 
 }  // namespace
 
+std::string required_value(const std::string& setting, const std::string& value) {
+  return setting == "poses.trajectory" ? without_points(value) : value;
+}
+
 std::string_view required_by(std::string_view setting, std::string_view merit) {
-  if (merit == kYieldMerit || merit == kCostMerit) {
+  if (setting == "solver.metric") return kMetrics;
+  if (judges_machines(merit)) {
     if (is_of(setting, "analysis.limits")) return "limits";
-    if (setting == "analysis.draws") return kDrawn;
+    const bool is_of_error = is_of(setting, "errors") && setting.ends_with(".draws");
+    if (setting == "analysis.draws" || is_of_error) return kDrawn;
   }
   if (merit == kCostMerit && (setting == "analysis.yield" || setting == "analysis.confidence")) return "wanted yields";
   const bool is_number = is_of(setting, "poses.count") || setting == "poses.trajectory.points";
   return is_of(setting, kPoses) && !is_number ? kPoses : std::string_view();
 }
 
-std::vector<OtherRequirement> other_requirements(const StoredResult& a, const StoredResult& b, std::string_view merit) {
+std::vector<OtherRequirement> other_requirements(const StoredResult& a, const StoredResult& b, std::string_view merit,
+                                                 PosesFrom poses) {
   const std::map<std::string, std::string> of_a = required_settings(a, merit);
   const std::map<std::string, std::string> of_b = required_settings(b, merit);
   std::map<std::string, std::pair<std::string, std::string>> both;
@@ -93,13 +110,14 @@ std::vector<OtherRequirement> other_requirements(const StoredResult& a, const St
   const bool same_poses = a.poses == b.poses;
   std::vector<OtherRequirement> others;
   for (const auto& [name, values] : both) {
+    const auto& [in_a, in_b] = values;
     const std::string_view topic = required_by(name, merit);
-    // A file of poses may have been changed, so its name says nothing.
-    const bool differs = topic == kPoses ? !same_poses && (name == "poses.file" || values.first != values.second)
-                                         : values.first != values.second;
-    if (differs) others.push_back({topic, name, values.first, values.second});
+    const bool differs = topic == kPoses ? !same_poses && explains_poses(name, in_a, in_b) : in_a != in_b;
+    if (differs) others.push_back({topic, name, required_value(name, in_a), required_value(name, in_b)});
   }
-  if (merit == kYieldMerit) add_draws_of_errors(a, b, others);
+  const bool explained = std::ranges::find(others, kPoses, &OtherRequirement::topic) != others.end();
+  if (poses == PosesFrom::table && !same_poses && !explained) others.push_back({kPoses, "--poses", "", ""});
+  if (judges_machines(merit)) add_draws_of_errors(a, b, others);
   return others;
 }
 

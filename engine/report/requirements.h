@@ -11,14 +11,22 @@
 /// although the machines are the same, so it does not say that a design is better.
 namespace poesy {
 
-/// What a setting requires: "limits", "wanted yields", "draws" or "poses". Empty if designs may differ in the setting
-/// and be compared by this figure of merit, as in a number of poses. setting: full name of the setting,
+/// What a setting requires: "limits", "wanted yields", "draws", "metrics" or "poses". Empty if designs may differ in
+/// the setting and be compared by this figure of merit, as in a number of poses. setting: full name of the setting,
 /// "analysis.limits.gap". merit: name of the figure of merit.
 std::string_view required_by(std::string_view setting, std::string_view merit);
 
-/// The requirements of two results that differ and on which this figure of merit depends. Settings of poses count only
-/// if the poses differ.
-std::vector<OtherRequirement> other_requirements(const StoredResult& a, const StoredResult& b, std::string_view merit);
+/// The value of a setting as far as it is a requirement: that of a trajectory without its number of points.
+std::string required_value(const std::string& setting, const std::string& value);
+
+/// Where the poses of results come from: from the settings of the study, or from a table (`--poses`).
+enum class PosesFrom { study, table };
+
+/// The requirements of two results that differ and on which this figure of merit depends, without their metrics
+/// (differ_in_metric()). Settings of poses count only if the poses differ; if they do not say why poses
+/// from tables differ, it is because of the tables ("--poses").
+std::vector<OtherRequirement> other_requirements(const StoredResult& a, const StoredResult& b, std::string_view merit,
+                                                 PosesFrom poses = PosesFrom::study);
 
 /// What differs, each once: "limits and poses".
 std::string topics_text(const std::vector<OtherRequirement>& others);

@@ -104,6 +104,14 @@ class Sweep(ProgramTest):
                 self.assertEqual((row["low"], row["high"]), (row["value"], row["value"]))
                 self.assertEqual(row["change"], row["value"] - rows[0]["value"])
                 self.assertEqual(row["verdict"], "worse" if row["change"] > 0 else "better")
+            self.assertNotIn(b"each interval alone", self.poesy("show", "sweep.h5").stdout)
+            self.succeeds("report", "sweep.h5", "-o", "sweep.html")
+            page = (self.folder / "sweep.html").read_text()
+            for words in ("tends to be too good", "take more samples", "told apart from it"):
+                self.assertNotIn(words, page)
+            self.swept(study=study, keys=("geometry.l=570,570.0,575 mm",))
+            rows = json.loads(self.succeeds("show", "sweep.h5", "--json"))["tables"][0]["rows"]
+            self.assertEqual(rows[1]["verdict"], "equal")
 
     def test_changes_count_the_same_machines(self):
         self.swept()
@@ -211,6 +219,13 @@ class Sweep(ProgramTest):
         self.assertIn("No design is called best, because the limits differ (gap): the yield is ", page)
         self.assertIn("Compare designs with the same limits.", page)
         self.assertNotIn("The yield is largest", page)
+
+    def test_no_best_design_of_other_draws_or_poses(self):
+        for key, topic, table in (("errors.linear.draws=per machine,per pose", "draws", 0),
+                                  ("poses.select=interior,boundary", "poses", 1)):
+            self.swept(keys=(key,))
+            rows = json.loads(self.succeeds("show", "sweep.h5", "--json"))["tables"][table]["rows"]
+            self.assertEqual(rows[1]["verdict"], f"other {topic}")
 
     def test_show_export_and_report(self):
         self.swept()

@@ -40,6 +40,14 @@ bool has_any(std::span<const double> values) {
   return std::ranges::any_of(values, [](double value) { return !std::isnan(value); });
 }
 
+/// Whether figure of merit q is up to chance: some interval has a width. Without draws, both ends are the value.
+bool is_by_chance(const SweepResult& found, std::size_t q) {
+  for (std::size_t d = 0; d < found.designs(); ++d) {
+    if (found.low(q, d) < found.high(q, d)) return true;
+  }
+  return false;
+}
+
 std::string value_text(const SweepResult& found, std::size_t q, double value) {
   const std::string& unit = found.quantity_unit(q);
   if (unit == "%") return percent_text(value / 100.0);
@@ -55,8 +63,10 @@ std::string unit_of_change(const SweepResult& found, std::size_t q) {
 /// the designs compare by it.
 std::string_view required_otherwise(const SweepResult& found, std::size_t q, std::size_t d, std::size_t e) {
   for (std::size_t k = 0; k < found.keys.size(); ++k) {
-    const std::string_view topic = required_by(found.keys[k], found.quantities[q]);
-    if (!topic.empty() && found.value(d, k) != found.value(e, k)) return topic;
+    const std::string& key = found.keys[k];
+    const std::string_view topic = required_by(key, found.quantities[q]);
+    const auto required = [&](std::size_t design) { return required_value(key, found.value(design, k)); };
+    if (!topic.empty() && required(d) != required(e)) return topic;
   }
   return {};
 }
@@ -69,10 +79,11 @@ std::string_view required_otherwise(const SweepResult& found, std::size_t q) {
   return {};
 }
 
-/// The verdict on a design from the interval of its change from another one: "better", "worse", or "not told apart" if
-/// the interval includes zero. Empty without an interval.
+/// The verdict on a design from the interval of its change from another one: "better", "worse", "equal" if the
+/// change is exactly zero, or "not told apart" if the interval includes zero. Empty without an interval.
 std::string_view verdict_on_change(double low, double high, bool most_is_best) {
   if (std::isnan(low) || std::isnan(high)) return "";
+  if (low == 0.0 && high == 0.0) return "equal";
   if (low <= 0.0 && high >= 0.0) return "not told apart";
   return (low > 0.0) == most_is_best ? "better" : "worse";
 }
@@ -91,11 +102,11 @@ std::string_view verdict_on_best(const SweepResult& found, std::size_t q, std::s
   return verdict_on_change(found.from_best_low(q, d), found.from_best_high(q, d), found.most_is_best(q) != 0);
 }
 
-/// The designs that are not told apart from the best one.
-std::vector<std::size_t> near_best(const SweepResult& found, std::size_t q) {
+/// The designs that have this verdict compared with the best one.
+std::vector<std::size_t> designs_with(const SweepResult& found, std::size_t q, std::string_view verdict) {
   std::vector<std::size_t> list;
   for (std::size_t d = 0; d < found.designs(); ++d) {
-    if (verdict_on_best(found, q, d) == "not told apart") list.push_back(d);
+    if (verdict_on_best(found, q, d) == verdict) list.push_back(d);
   }
   return list;
 }
@@ -111,13 +122,17 @@ std::string joined_names(const SweepResult& found, std::span<const std::size_t> 
   return some_names(names, kMost) + (numbers && !found.unit(0).empty() ? " " + found.unit(0) : "");
 }
 
-/// A clause on the designs that may be as good as the best one: "; not told apart from it: 490, 500 mm". Empty if the
-/// changes have no intervals.
+/// A clause on the designs that are or may be as good as the best one: "; not told apart from it: 490, 500 mm". Empty
+/// if nothing can be said of them.
 std::string near_best_clause(const SweepResult& found, std::size_t q) {
-  if (!has_any(found.from_best_low.row(q))) return {};
-  const std::vector<std::size_t> near = near_best(found, q);
-  return near.empty() ? "; all others are told apart from it"
-                      : "; not told apart from it: " + joined_names(found, near);
+  std::string text;
+  for (const auto& [verdict, words] :
+       {std::pair("equal", "equal to it"), {"not told apart", "not told apart from it"}}) {
+    const std::vector<std::size_t> designs = designs_with(found, q, verdict);
+    if (!designs.empty()) text += fmt::format("; {}: {}", words, joined_names(found, designs));
+  }
+  const bool all_are_worse = designs_with(found, q, "worse").size() + 1 == found.designs();
+  return is_by_chance(found, q) && all_are_worse ? "; all others are told apart from it" : text;
 }
 
 std::string names_of_keys(const SweepResult& found) {
@@ -136,7 +151,7 @@ std::string at_design(const SweepResult& found, std::size_t q, std::size_t d) {
 std::string no_best_text(const SweepResult& found, std::size_t q, std::string_view topic) {
   std::vector<std::string> keys;
   for (std::size_t k = 0; k < found.keys.size(); ++k) {
-    if (!required_by(found.keys[k], found.quantities[q]).empty()) keys.push_back(short_key(found, k));
+    if (required_by(found.keys[k], found.quantities[q]) == topic) keys.push_back(short_key(found, k));
   }
   return fmt::format(
       "No design is called best, because the {} differ ({}): the {} is {}, the first design, and {}, the "
@@ -240,11 +255,14 @@ Table quantity_table(const SweepResult& found, std::size_t q) {
   if (has_intervals) {
     change("change_low", "low", found.change_low);
     change("change_high", "high", found.change_high);
+    if (is_by_chance(found, q)) table.notes.push_back(interval_note(found, q));
+  }
+  const std::string_view topic = required_otherwise(found, q);
+  if (has_intervals || !topic.empty()) {
     columns.push_back({text_column("verdict", "against the first"),
                        [&, q](std::size_t d) { return text_cell(verdict_on_first(found, q, d)); }});
-    table.notes.push_back(interval_note(found, q));
   }
-  if (const std::string_view topic = required_otherwise(found, q); !topic.empty()) {
+  if (!topic.empty()) {
     table.notes.push_back(fmt::format(
         "other {0}: a {1} under other {0} does not say which design is better; sweep other keys with the same {0}",
         topic, found.quantities[q]));
@@ -255,7 +273,7 @@ Table quantity_table(const SweepResult& found, std::size_t q) {
     change("from_best_high", "high", found.from_best_high, 2);
     columns.push_back({text_column("verdict_on_best", "against the best"),
                        [&, q](std::size_t d) { return text_cell(verdict_on_best(found, q, d)); }});
-    table.notes.push_back(best_note(found));
+    if (is_by_chance(found, q)) table.notes.push_back(best_note(found));
   }
   if (std::ranges::any_of(found.verdict.all(), [](const std::string& verdict) { return verdict != "none"; })) {
     columns.push_back(
@@ -286,27 +304,39 @@ SolveTally tally(const StoredResult& result) {
   return {"design", design_names(found), 1, found.solves};
 }
 
-/// A sentence on how certain it is which design is the best. Empty if the changes have no intervals.
+/// A sentence on how certain it is which design is the best. Empty if the changes have no intervals, or are
+/// exact.
 std::string best_certainty(const SweepResult& found, std::size_t q) {
-  if (!required_otherwise(found, q).empty() || !has_any(found.from_best_low.row(q))) return {};
+  const bool is_compared = required_otherwise(found, q).empty() && has_any(found.from_best_low.row(q));
+  if (!is_compared || !is_by_chance(found, q)) return {};
   return fmt::format(
       " Each design is compared with the best by an interval that alone has the level {}; the best was chosen after "
       "all were seen, so its value tends to be too good.",
       percent_text(found.conf_level));
 }
 
+/// Whether more samples make the interval of figure of merit q narrower. They do not if errors are drawn from measured
+/// parts, because the number of parts limits what is known of the yield.
+bool narrows(const StoredResult& result, const SweepResult& found, std::size_t q) {
+  return found.quantities[q] != kYieldMerit ||
+         std::ranges::none_of(readable_settings(result.study_text), [](const auto& setting) {
+           return setting.first.starts_with("errors.") && setting.second.find("measured") != std::string::npos;
+         });
+}
+
 /// Advice that follows from the best design.
-std::string what_to_do(const SweepResult& found, std::size_t q) {
+std::string what_to_do(const StoredResult& result, const SweepResult& found, std::size_t q) {
   if (const std::string_view topic = required_otherwise(found, q); !topic.empty()) {
     return fmt::format("Compare designs with the same {}.", topic);
   }
   const std::optional<std::size_t> best = best_design(found, q);
-  const std::string more =
-      near_best(found, q).empty() ? "" : " To tell the designs apart that are near the best, take more samples.";
+  const std::string_view more = designs_with(found, q, "not told apart").empty() || !narrows(result, found, q)
+                                    ? ""
+                                    : " To tell the designs apart that are near the best, take more samples.";
   if (best && (*best == 0 || *best + 1 == found.designs())) {
-    return "The best design is at an end of the sweep: look beyond it." + more;
+    return fmt::format("The best design is at an end of the sweep: look beyond it.{}", more);
   }
-  return "The best design lies within the sweep: look closer around it." + more;
+  return fmt::format("The best design lies within the sweep: look closer around it.{}", more);
 }
 
 Answer answer(const StoredResult& result) {
@@ -318,7 +348,8 @@ Answer answer(const StoredResult& result) {
                                ? "All designs have the same machines, so their differences are surer than their values."
                                : "All designs draw the same errors.";
   const std::size_t q = 0;
-  return {{"Answer", best}, {"How sure", sure + best_certainty(found, q)}, {"What to do", what_to_do(found, q)}};
+  return {
+      {"Answer", best}, {"How sure", sure + best_certainty(found, q)}, {"What to do", what_to_do(result, found, q)}};
 }
 
 /// Designs as points of curves over the first key, with a curve for each combination of the other keys' values.

@@ -172,6 +172,25 @@ TEST(OtherRequirements, AreTheContentOfAFileOfPoses) {
   EXPECT_EQ(topics_text(other_requirements(result_of(study, 0.0), result_of(study, 1.0), kYieldMerit)), "poses");
 }
 
+TEST(OtherRequirements, AreTheContentOfAFileOfATrajectory) {
+  const auto study = [](const std::string& rest) {
+    return "[poses]\nselect = \"trajectory\"\ntrajectory = { file = \"way.csv\"" + rest + " }\n";
+  };
+  const StoredResult a = result_of(study(", points = 3"), 0.0);
+  EXPECT_EQ(topics_text(other_requirements(a, result_of(study(", points = 3"), 1.0), kYieldMerit)), "poses");
+  EXPECT_TRUE(other_requirements(a, result_of(study(", points = 9"), 1.0), kYieldMerit).empty());
+  EXPECT_TRUE(other_requirements(a, a, kYieldMerit).empty());
+}
+
+TEST(OtherRequirements, AreTablesOfPoses) {
+  const StoredResult a = result_of("", 0.0);
+  const StoredResult b = result_of("", 1.0);
+  const std::string merit = "largest magnitude of gap";
+  EXPECT_TRUE(other_requirements(a, b, merit, PosesFrom::study).empty());
+  EXPECT_TRUE(other_requirements(a, a, merit, PosesFrom::table).empty());
+  EXPECT_EQ(others_text(other_requirements(a, b, merit, PosesFrom::table), 'B'), "the poses differ (--poses)");
+}
+
 TEST(OtherRequirements, AreNotTheNumberOfPosesOfATrajectory) {
   const auto study = [](const std::string& rest) {
     return "[poses]\nselect = \"trajectory\"\ntrajectory = { curve = \"circle\", " + rest + " }\n";
@@ -190,6 +209,11 @@ TEST(OtherRequirements, AreErrorsThatOnlyOneResultDrawsAtEachPose) {
   b.factor_draws = {"per pose", "per machine"};
   EXPECT_EQ(others_text(other_requirements(a, b, kYieldMerit), 'C'),
             "the draws differ (draws of play: per machine in A, per pose in C)");
+  EXPECT_EQ(topics_text(other_requirements(a, b, kCostMerit)), "draws");
+  EXPECT_TRUE(other_requirements(a, b, "root mean square of gap").empty());
+  a.study_text = "[errors]\noverride.play.draws = \"per machine\"\n";
+  b.study_text = "[errors]\noverride.play.draws = \"per pose\"\n";
+  EXPECT_EQ(other_requirements(a, b, kYieldMerit).size(), 1U);
 }
 
 TEST(RequiredBy, KnowsTheKeysOfASweep) {
@@ -201,6 +225,13 @@ TEST(RequiredBy, KnowsTheKeysOfASweep) {
   EXPECT_EQ(required_by("poses.workspace.z", kYieldMerit), "poses");
   EXPECT_EQ(required_by("poses.count", kYieldMerit), "");
   EXPECT_EQ(required_by("mechanism.geometry.R", kYieldMerit), "");
+  EXPECT_EQ(required_by("errors.override.play.draws", kYieldMerit), "draws");
+  EXPECT_EQ(required_by("errors.linear.draws", kCostMerit), "draws");
+  EXPECT_EQ(required_by("errors.linear.draws", "root mean square of gap"), "");
+  EXPECT_EQ(required_by("errors.linear.sigma", kYieldMerit), "");
+  EXPECT_EQ(required_by("solver.metric", "root mean square of gap"), "metrics");
+  EXPECT_EQ(required_value("poses.trajectory", "{ file = \"way.csv\", points = 9 }"),
+            required_value("poses.trajectory", "{ file = \"way.csv\", points = 3 }"));
 }
 
 TEST(ComparedResponse, IsOneThatAllHave) {
