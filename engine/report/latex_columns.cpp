@@ -162,13 +162,20 @@ std::optional<Table> without_a_group(const Table& table) {
   return with_columns(table, [&](std::size_t c) { return dispensable(table, c) < most; });
 }
 
-/// The table without the rightmost column that is not of the answer, or without the rightmost; none if only the first
-/// column and the first number are left.
+/// Whether a column goes if this one is left out: the interval of its value, or the other end of its interval.
+bool goes_with(const Table& table, std::size_t other, std::size_t left_out) {
+  if (other == left_out) return true;
+  if (always_stays(table, other) || !is_interval(table.columns[other])) return false;
+  return value_of(table, other) == value_of(table, left_out);
+}
+
+/// The table without the rightmost column that is not of the answer, or without the rightmost, and without what goes
+/// with it; none if only the first column and the first number are left.
 std::optional<Table> without_a_column(const Table& table) {
   for (const bool also_answer : {false, true}) {
     for (std::size_t c = table.columns.size(); c-- > 0;) {
       if (always_stays(table, c) || (!also_answer && is_of_the_answer(table.columns[c]))) continue;
-      return with_columns(table, [&](std::size_t other) { return value_of(table, other) != c && other != c; });
+      return with_columns(table, [&](std::size_t other) { return !goes_with(table, other, c); });
     }
   }
   return std::nullopt;

@@ -250,8 +250,12 @@ Answer comparison_answer(const Comparison& compared) {
                               in_a.label, a.items[top_a], value(in_a, top_a), a.items[top_b], value(in_b, top_b)));
   }
   if (in_a.value[most] == in_b.value[most] || change_of(in_a.value[most], in_b.value[most]) == 0.0) {
-    lines.emplace_back("No change",
-                       fmt::format("{}, {}: A and B have the same values.", a.options.front(), in_a.label));
+    const auto is_unknown = [](double one) { return std::isnan(one); };
+    const bool some_unknown =
+        std::ranges::any_of(first(in_a), is_unknown) || std::ranges::any_of(first(in_b), is_unknown);
+    lines.emplace_back(a.ranked ? "No change" : "Answer", fmt::format("{}{}, {}: A and B have the same {}values.",
+                                                                      a.ranked ? "" : "No change: ", a.options.front(),
+                                                                      in_a.label, some_unknown ? "known " : ""));
   } else {
     lines.emplace_back(a.ranked ? "Largest change" : "Answer",
                        fmt::format("{}: {}, {}, from {} to {}.", a.options.front(), a.items[most], in_a.label,
