@@ -20,7 +20,8 @@ std::string size_text(const UnallocatedError& error) {
   return fmt::format("{}, sigma {}", error.distribution, response_text(error.named, error.sigma));
 }
 
-/// The errors with their sizes, and each size once: "a, b (normal, sigma 0.02 mm); c (uniform, sigma 0.1 deg)".
+/// The errors with their sizes, and each size once: "a, b (normal, sigma 0.02 mm); c (uniform, sigma 0.1 deg)". Errors
+/// of further sizes than the first three are counted: "; and 4 more errors".
 std::string names_and_sizes(const std::vector<UnallocatedError>& errors) {
   std::vector<std::pair<std::string, std::vector<std::string>>> groups;
   for (const UnallocatedError& error : errors) {
@@ -29,8 +30,17 @@ std::string names_and_sizes(const std::vector<UnallocatedError>& errors) {
     if (at == groups.end()) at = groups.insert(groups.end(), {std::move(size), {}});
     at->second.push_back(error.named.name);
   }
+  constexpr std::size_t kMostGroups = 3;
   std::vector<std::string> texts;
-  for (const auto& [size, names] : groups) texts.push_back(fmt::format("{} ({})", some_names(names), size));
+  std::size_t more = 0;
+  for (const auto& [size, names] : groups) {
+    if (texts.size() < kMostGroups) {
+      texts.push_back(fmt::format("{} ({})", some_names(names), size));
+    } else {
+      more += names.size();
+    }
+  }
+  if (more > 0) texts.push_back("and " + counted(more, "more error", "more errors"));
   return fmt::format("{}", fmt::join(texts, "; "));
 }
 

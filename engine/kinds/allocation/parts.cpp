@@ -65,6 +65,12 @@ void read_values(const StudyValue& value, const PartBlock& of, AllocatedPart& pa
 
 std::string size_text(double size) { return readable_text({size, Dimension::length}, 9); }
 
+/// Whether two sizes are the same except for rounding.
+bool is_same_size(double a, double b) {
+  constexpr double kSame = 1e-9;  // as a share
+  return std::abs(a - b) <= kSame * b;
+}
+
 /// A distance of the drawing whose error the part has, and whose size is known. Throws InputError if the part has two
 /// such distances of different sizes. Null if it has none.
 const Feature* sized_distance(const StudyValue& grades, const AllocatedPart& part, const ModelDescription& model) {
@@ -72,7 +78,7 @@ const Feature* sized_distance(const StudyValue& grades, const AllocatedPart& par
   for (const Feature& feature : model.features) {
     const bool is_sized = feature.kind == FeatureKind::distance && feature.size[0] > 0.0;
     if (!is_sized || std::ranges::find(part.factors, feature.middle.front()) == part.factors.end()) continue;
-    if (found != nullptr && found->size[0] != feature.size[0]) {
+    if (found != nullptr && !is_same_size(found->size[0], feature.size[0])) {
       grades.fail(fmt::format("is set, but '{}' is {} and '{}' is {} on the drawing", found->name,
                               size_text(found->size[0]), feature.name, size_text(feature.size[0])),
                   "a grade has another width for each size; make them separate parts");
@@ -84,17 +90,16 @@ const Feature* sized_distance(const StudyValue& grades, const AllocatedPart& par
 
 /// Reads the size of the part, which its distance on the drawing may state.
 void read_nominal_size(const StudyValue& grades, const PartBlock& of, AllocatedPart& part) {
-  constexpr double kSame = 1e-9;  // of two sizes that differ by rounding, as a share
   const Feature* const own = sized_distance(grades, part, of.model);
   const auto size = of.block.find("nominal_size");
   if (!size && own == nullptr) {
     grades.fail("is set, but nominal_size is missing", "write the size of the part, e.g. \"50 mm\"");
   }
   part.nominal_size = size ? size->positive_quantity(Dimension::length) : own->size[0];
-  if (own != nullptr && std::abs(part.nominal_size - own->size[0]) > kSame * own->size[0]) {
+  if (own != nullptr && !is_same_size(part.nominal_size, own->size[0])) {
     size->fail(fmt::format("is '{}', but '{}' is {} in the mechanism's file", printable(size->text()), own->name,
                            size_text(own->size[0])),
-               "leave it out, so that each distance has its own size");
+               fmt::format("leave it out, or put '{}' into a block of its own", own->name));
   }
   if (it_grade_width(part.nominal_size, ItGrade::it7)) return;
   (size ? *size : grades)

@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/units.h"
+#include "engine/kinds/allocation/in_no_part.h"
 #include "engine/kinds/allocation/relative_limits.h"
 #include "engine/kinds/allocation/search_stages.h"
 #include "engine/report/display.h"
@@ -37,31 +38,20 @@ std::string finer_parts(const SearchProblem& problem) {
   return std::string("lower the bounds of parts") + (has_steps ? ", or round to finer steps" : "");
 }
 
-/// The names of the errors that vary and are in no part.
-std::vector<std::string> errors_in_no_part(const SearchProblem& problem) {
-  std::vector<std::string> names;
-  for (const FactorIndex error : problem.run.study.analysis.factors) {
-    const bool is_in_part = std::ranges::any_of(problem.programme.parts(), [&](const AllocatedPart& part) {
-      return std::ranges::find(part.factors, error) != part.factors.end();
-    });
-    if (!is_in_part) names.push_back(problem.run.study.model().factors[error.value].name);
-  }
-  return names;
-}
-
 /// Refuses a study if too many machines are rejected although all their parts are perfect.
 void refuse_others_alone(const SearchProblem& problem) {
   constexpr std::size_t kMostNamed = 5;
-  const std::vector<std::string> others = errors_in_no_part(problem);
+  std::vector<std::string> others;
+  for (const UnallocatedError& error : errors_in_no_part(problem.run.study)) others.push_back(error.named.name);
   if (others.empty()) return;
   const std::vector<double> perfect(problem.programme.size(), 0.0);
   const std::uint64_t rejects = rejects_of(loads_of(problem, problem.run.study.seed, perfect));
   if (rejects <= problem.allowed.design) return;
   throw InputError(
       {},
-      fmt::format("{} % of the machines within the limits cannot be reached: {}errors that are in no part alone reject "
+      fmt::format("{} of the machines within the limits cannot be reached: {}errors that are in no part alone reject "
                   "{} of {} machines ({}), and {} may be rejected",
-                  100.0 * problem.options.yield, problem.calibration ? "the noise of the calibration and " : "",
+                  percent_text(problem.options.yield), problem.calibration ? "the noise of the calibration and " : "",
                   rejects, problem.run.study.analysis.samples, some_names(others, kMostNamed), problem.allowed.design),
       "no tolerance of a part can help; widen a limit, ask for a smaller yield, make these errors smaller (a play by "
       "a closer fit), or list them as parts");
@@ -124,18 +114,19 @@ void refuse_lowest(const SearchProblem& problem, std::uint64_t rejects) {
   throw InputError(
       {},
       fmt::format(
-          "{} % of the machines within the limits cannot be reached: with every tolerance at its lowest, {} of {} "
+          "{} of the machines within the limits cannot be reached: with every tolerance at its lowest, {} of {} "
           "machines are not within them, and {} may be",
-          100.0 * problem.options.yield, rejects, problem.run.study.analysis.samples, problem.allowed.design),
+          percent_text(problem.options.yield), rejects, problem.run.study.analysis.samples, problem.allowed.design),
       "widen a limit, ask for a smaller yield, or " + finer_parts(problem));
 }
 
 void refuse_perfect(const SearchProblem& problem, std::uint64_t rejects) {
   throw InputError(
       {},
-      fmt::format("no tolerances were found with which {} % of the machines are within the limits: of the finest that "
+      fmt::format("no tolerances were found with which {} of the machines are within the limits: of the finest that "
                   "were tried, {} of {} machines are not within them, and {} may be",
-                  100.0 * problem.options.yield, rejects, problem.run.study.analysis.samples, problem.allowed.design),
+                  percent_text(problem.options.yield), rejects, problem.run.study.analysis.samples,
+                  problem.allowed.design),
       "widen a limit, give the parts bounds, or leave out poses where machines cannot be solved");
 }
 

@@ -32,8 +32,9 @@ struct FewMatter {
   /// Errors that together cause at least the share kMost of the mean square, largest first. If the last one that is
   /// needed belongs to a family (Family), they contain all of the family.
   std::vector<std::string> names;
-  double sum = 0.0;                 ///< share of the mean square that these errors cause
-  std::vector<std::string> hardly;  ///< errors that together cause less than the share kHardly of the mean square
+  double sum = 0.0;  ///< share of the mean square that these errors cause
+  /// Errors that together cause less than the share kHardly of the mean square, without copies of those in `names`.
+  std::vector<std::string> hardly;
 };
 
 constexpr double kMost = 0.8;
@@ -48,6 +49,13 @@ std::string_view stem_of(std::string_view name) {
   const std::size_t end = name.find_last_not_of("0123456789");
   const bool has_number = end != std::string_view::npos && end > 0 && end + 1 < name.size() && name[end] == '_';
   return has_number ? name.substr(0, end) : name;
+}
+
+bool has_number(std::string_view name) { return stem_of(name) != name; }
+
+/// Whether two errors are copies of one error in different limbs.
+bool are_copies(std::string_view a, std::string_view b) {
+  return a != b && has_number(a) && has_number(b) && stem_of(a) == stem_of(b);
 }
 
 /// Finds the errors between which a cut after the error `last` would be arbitrary.
@@ -120,7 +128,13 @@ std::optional<FewMatter> few_matter(const StoredResult& result) {
     few.names.push_back(result.factors[order[n]].name);
     few.sum += shares[order[n]];
   }
-  for (std::size_t n = order.size(); n-- > loose;) few.hardly.push_back(result.factors[order[n]].name);
+  const auto is_copy = [&](const std::string& name) {
+    return std::ranges::any_of(few.names, [&](const std::string& held) { return are_copies(held, name); });
+  };
+  for (std::size_t n = order.size(); n-- > loose;) {
+    const std::string& name = result.factors[order[n]].name;
+    if (!is_copy(name)) few.hardly.push_back(name);
+  }
   return few;
 }
 
@@ -188,15 +202,20 @@ std::vector<std::string> with_copies_together(const std::vector<std::string>& na
   std::vector<std::string> list;
   std::vector<std::string_view> stems;
   for (const std::string& name : names) {
+    if (!has_number(name)) {
+      list.push_back(name);
+      continue;
+    }
     const std::string_view stem = stem_of(name);
     if (std::ranges::find(stems, stem) != stems.end()) continue;
     stems.push_back(stem);
     std::vector<std::string_view> numbers;
     for (const std::string& other : names) {
-      if (other != stem && stem_of(other) == stem) numbers.push_back(std::string_view(other).substr(stem.size() + 1));
+      if (has_number(other) && stem_of(other) == stem)
+        numbers.push_back(std::string_view(other).substr(stem.size() + 1));
     }
     std::ranges::sort(numbers, {}, [](std::string_view number) { return std::pair(number.size(), number); });
-    list.push_back(numbers.empty() ? name : fmt::format("{}_{}", stem, fmt::join(numbers, "/")));
+    list.push_back(fmt::format("{}_{}", stem, fmt::join(numbers, "/")));
   }
   return list;
 }

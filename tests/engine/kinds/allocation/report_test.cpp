@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/kinds/allocation/in_no_part.h"
 #include "engine/kinds/allocation/kind.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/allocation/summary.h"
@@ -122,6 +123,15 @@ TEST_F(AllocationReport, NamesTheErrorsThatAreInNoPart) {
   EXPECT_NE(page.find(text + ". The certificate holds only with these sizes."), std::string::npos);
   EXPECT_NE(page.find("data-table=\"in_no_part\""), std::string::npos);
   EXPECT_NE(kAllocationReport.method(result).text.find(text), std::string::npos);
+}
+
+TEST(InNoPartText, NamesThreeSizes) {
+  std::vector<UnallocatedError> errors;
+  for (const int n : {1, 2, 3, 4, 5}) errors.push_back({{"e_" + std::to_string(n), "m"}, "normal", 1e-5 * n});
+  EXPECT_EQ(
+      in_no_part_text(errors, 9),
+      "5 of 9 varied errors are in no part; their sizes stay as [errors] states them: e_1 (normal, sigma 0.01 mm); "
+      "e_2 (normal, sigma 0.02 mm); e_3 (normal, sigma 0.03 mm); and 2 more errors");
 }
 
 TEST_F(AllocationReport, PutsTheDrawingInATable) {

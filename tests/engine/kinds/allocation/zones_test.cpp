@@ -310,7 +310,8 @@ TEST(ZoneGrades, AreThoseOfTheSizeOnTheDrawing) {
   const test::Marked bad(study_text(grades + "nominal_size = ^\"905 mm\"\n"));
   test::expect_input_error([&] { study_of_text(bad.text, "study.toml", catalog_with_size(), StudyUse::run); },
                            {"study.toml", bad.line, bad.column},
-                           {"'905 mm', but 'rod_3' is 340 mm in the mechanism's file", "leave it out"});
+                           {"'905 mm', but 'rod_3' is 340 mm in the mechanism's file",
+                            "leave it out, or put 'rod_3' into a block of its own"});
   const test::Marked missing(study_text(kRods + "grades = ^[\"IT6\"]\n"));
   test::expect_input_error([&] { study_of_text(missing.text, "study.toml", catalog(), StudyUse::run); },
                            {"study.toml", missing.line, missing.column}, {"nominal_size is missing"});
