@@ -139,6 +139,8 @@ class Calibrate(ProgramTest):
         self.assertEqual(list(np.flatnonzero(found["outlier"])), [4, 5])
         self.assertIn("residual 1.46 of the noise, p = 0.0001: deviation_z of p5 is 4.6 standard deviations off",
                       done.stderr.decode())
+        self.assertIn("First find out why the outlier is so far off: the fitted values rest on it. Then give the "
+                      "controller the fitted values", self.page_of("delta-measured.toml", "wrong.csv"))
 
     def heights(self, true_errors, extra=""):
         """The heights that a machine with these errors has at the 13 places, as `poesy evaluate` solves it."""
@@ -269,6 +271,12 @@ class Calibrate(ProgramTest):
         for table, lines in (("estimates", 8), ("residuals", 16), ("correlation", 8), ("left", 8), ("next", 6),
                              ("controller", 5)):
             self.assertEqual(len((self.folder / "tables" / f"{table}.csv").read_text().splitlines()), lines, table)
+
+    def page_of(self, study, measured):
+        """The report on these measurements, in one line."""
+        self.succeeds("calibrate", study, "--measured", measured, "-o", "page.h5")
+        self.succeeds("report", "page.h5", "-o", "page.html")
+        return " ".join((self.folder / "page.html").read_text().split())
 
     def said_of(self, changes=(), measured="delta-heights.csv", code=0):
         """What is said on stderr of the printer, and its code."""
@@ -408,6 +416,11 @@ class Calibrate(ProgramTest):
         np.testing.assert_allclose(none["estimate"], equal["estimate"], rtol=0, atol=1e-9)
         self.assertTrue(np.isnan(none["sd"]).all())
         self.assertIn("the noise is 0", done.stdout.decode())
+        page = self.page_of("study.toml", "m.csv")
+        self.assertIn("5 more errors have a tolerance and are not fitted.", page)
+        self.assertIn("fit more errors and measure more.", page)
+        for words in ("a good chi-square does not mean", "next = 5"):
+            self.assertNotIn(words, page)
 
 
 if __name__ == "__main__":

@@ -61,6 +61,16 @@ class Limits(ProgramTest):
             self.assertIn(words, done.stderr.decode())
         return found
 
+    def test_the_advice_names_what_the_study_lacks(self):
+        """To judge machines: the key of the yield, if they are drawn already."""
+        machines = MONTE_CARLO.replace("per pose", "per machine")
+        for study, key in ((MONTE_CARLO, "draws"), (machines, "judge")):
+            limit = '[analysis]\njudge = "rms"\nlimits.linear_deformation = "1 m"\n'
+            self.write("study.toml", study.replace("[analysis]\n", limit))
+            self.succeeds("run", "study.toml", "-o", "study.h5", "--quiet")
+            self.succeeds("report", "study.h5", "-o", "study.html")
+            self.assertIn(f"ask for a yield ({key} = ", (self.folder / "study.html").read_text())
+
     def test_digits(self):
         """Estimates are shown with four digits; JSON and CSV have all of them."""
         self.run_with(1.0, code=0)
@@ -182,6 +192,7 @@ class Limits(ProgramTest):
         self.succeeds("report", "rows.h5", "-o", "rows.html")
         report = (self.folder / "rows.html").read_text()
         self.assertNotIn("nothing here is up to chance", report)
+        self.assertIn("so real machines deviate more. A Monte Carlo study with errors.machines draws them.", report)
         for text in (said, self.succeeds("show", "rows.h5"), report):
             text = " ".join(text.split())
             self.assertIn(told, text)
@@ -189,6 +200,10 @@ class Limits(ProgramTest):
         method = " ".join(self.succeeds("show", "rows.h5", "--method").split())
         self.assertIn("1 geometric error was given values.", method)
         self.assertIn(f"{len(zero)} other errors were zero.", method)
+        with h5py.File(self.folder / "rows.h5", "r+") as file:
+            file["zero_error"][0] = "../a"
+        done = self.poesy("show", "rows.h5")
+        self.assertEqual(done.returncode, 3, done.stderr)
 
     def test_places_have_no_exponents(self):
         self.write("cases.toml", 'format = "poesy-study"\nversion = 1\n' + CASES % "1e-3")

@@ -128,15 +128,29 @@ std::string sure_text(const CalibrationResult& found) {
   return text;
 }
 
+/// What has to be done before the fitted values are of use, if the measurements contradict them.
+std::string contradiction_text(const CalibrationResult& found) {
+  const bool has_outlier = std::ranges::any_of(found.outlier.all(), [](auto is) { return is != 0; });
+  return has_outlier ? "First find out why the outlier is so far off: the fitted values rest on it."
+         : found.unfitted > 0
+             ? "First find out why the measurements contradict the fitted errors: fit more of the errors."
+             : "First find out why the measurements contradict the fitted errors: the noise, or their tolerances.";
+}
+
 /// The numbers for the controller, and what to measure next.
 std::string advice_text(const CalibrationResult& found) {
   const std::string typed = typed_text(found);
   std::string text = sentence(typed.empty() ? "give the controller the fitted values" : typed);
+  if (is_contradicted(found)) {
+    text = contradiction_text(found) + " Then give the controller the fitted values" +
+           (typed.empty() ? "." : fmt::format(" ({}).", typographic(typed)));
+  }
   if (!found.gain.empty()) return text + " To know them better, measure at the first of the poses to measure next.";
   if (unsure_notes(found).empty()) return text;
-  return text +
-         " To know them better, fit more errors and measure more: next = 5 in [analysis.calibration] names the "
-         "poses that tell most.";
+  text += found.unfitted > 0 ? " To know them better, fit more errors and measure more"
+                             : " To know them better, measure more or more precisely";
+  if (found.noise_is_known == 0) return text + ".";  // next poses are not chosen then
+  return text + ": next = 5 in [analysis.calibration] names the poses that tell most.";
 }
 
 /// The fitted values, and the displacement that remains with them.

@@ -96,10 +96,13 @@ std::string below_noise_text(const CalibrationResult& found) {
 
 /// A sentence on the errors that are not fitted. Precondition: there are some.
 std::string unfitted_text(const CalibrationResult& found) {
-  return fmt::format(
-      "{} more errors have a tolerance and are not fitted: a good chi-square does not mean that the fitted errors are "
-      "the true ones, and intervals are too narrow for them",
-      found.unfitted);
+  const std::string text =
+      fmt::format("{} more {} a tolerance and {} not fitted", found.unfitted,
+                  found.unfitted == 1 ? "error has" : "errors have", found.unfitted == 1 ? "is" : "are");
+  if (found.noise_is_known == 0) return text;
+  return text +
+         ": a good chi-square does not mean that the fitted errors are the true ones, and intervals are too "
+         "narrow for them";
 }
 
 /// The root mean square over the poses of a component of the displacement that remains after calibration, including its
@@ -121,11 +124,6 @@ bool is_measured(const CalibrationResult& found, const std::string& component) {
   return std::ranges::any_of(found.values, [&](const std::string& value) {
     return value.starts_with("deviation_" + component + " ") || value.starts_with("actual_" + component + " ");
   });
-}
-
-/// Whether the measurements contradict the fitted errors by the chi-square test.
-bool is_contradicted(const CalibrationResult& found) {
-  return found.noise_is_known != 0 && found.sd_is_estimated == 0 && found.dof > 0 && found.p < kContradiction;
 }
 
 /// True if two components of the remaining displacement are equal at all poses, but for rounding.
@@ -178,6 +176,10 @@ std::vector<std::string> unsure_notes(const CalibrationResult& found) {
   if (std::string below = below_noise_text(found); !below.empty()) notes.push_back(std::move(below));
   if (found.unfitted > 0) notes.push_back(unfitted_text(found));
   return notes;
+}
+
+bool is_contradicted(const CalibrationResult& found) {
+  return found.noise_is_known != 0 && found.sd_is_estimated == 0 && found.dof > 0 && found.p < kContradiction;
 }
 
 std::vector<std::string> estimate_notes(const CalibrationResult& found) {

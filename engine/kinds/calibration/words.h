@@ -52,6 +52,8 @@ std::string kept_text(const CalibrationResult& found);
 /// "to type in: delta_radius 95.0000 -> 95.1139 +- 0.1394 mm", from the value while the machine was measured to the new
 /// one; empty without numbers for the controller.
 std::string typed_text(const CalibrationResult& found);
+/// Whether the measurements contradict the fitted errors by the chi-square test.
+bool is_contradicted(const CalibrationResult& found);
 /// Warnings about contradictions, outliers, and estimates far outside their tolerances.
 std::vector<std::string> calibration_warnings(const CalibrationResult& found);
 

@@ -140,13 +140,17 @@ std::size_t worst_row(const std::vector<RowOutcome>& outcomes) {
   return worst;
 }
 
-std::string zero_errors_text(const Evaluation& found) {
+std::string no_column_text(const Evaluation& found) {
   constexpr std::size_t kMostNamed = 5;
   const std::size_t zero = found.zero_errors.size();
   if (zero == 0) return {};
-  return fmt::format(
-      "{} of {} errors have no column and are zero ({}); errors.machines in a Monte Carlo study draws them", zero,
-      zero + found.errors.length<axis::Factor>(), some_names(found.zero_errors, kMostNamed));
+  return fmt::format("{} of {} errors have no column and are zero ({})", zero,
+                     zero + found.errors.length<axis::Factor>(), some_names(found.zero_errors, kMostNamed));
+}
+
+std::string zero_errors_text(const Evaluation& found) {
+  if (found.zero_errors.empty()) return {};
+  return no_column_text(found) + "; errors.machines in a Monte Carlo study draws them";
 }
 
 constinit const Kind kEvaluateKind{.study = kEvaluateStudy,

@@ -89,6 +89,10 @@ inline std::size_t line_of_row(std::size_t row) { return row + 2; }
 /// pose was solved with all rows; samples are counted from 0. Empty if each row has its own pose and no label.
 std::vector<std::string> row_names(const RowLabels& labels, Pairing pairing, std::size_t rows);
 
+/// "56 of 68 errors have no column and are zero (play_1, play_2 and 54 more)". Empty if each error has a column, or if
+/// the errors are those of cases.
+std::string no_column_text(const Evaluation& found);
+
 /// "56 of 68 errors have no column and are zero (play_1, play_2 and 54 more); ...", with what draws them. Empty if each
 /// error has a column, or if the errors are those of cases.
 std::string zero_errors_text(const Evaluation& found);

@@ -446,6 +446,7 @@ void read(const h5::File& file, StoredResult& result) {
   // Files of version 0.2 do not say which errors have no column.
   const std::string zero_errors = std::string("/") + kZeroErrors;
   if (!has_cases && file.exists(zero_errors)) found.zero_errors = file.read<std::string>(zero_errors);
+  check_names(found.zero_errors, zero_errors);
   // Files of version 0.2 do not say which rows are within all limits.
   if (result.verdicts && file.exists(kWithinLimits)) {
     found.within_limits = read_along<std::uint8_t>(file, kWithinLimits, {rows});

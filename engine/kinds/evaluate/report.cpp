@@ -316,8 +316,10 @@ StudyWords words(const StoredResult& result) {
 /// How sure the outcomes are: as sure as the given errors, if there are no others.
 std::string certainty_text(const Evaluation& found) {
   if (found.zero_errors.empty()) return "These errors were given, not drawn, so nothing here is up to chance.";
-  return "The errors in the table were given, not drawn. But " + zero_errors_text(found) +
-         ", so real machines may fail more often than these rows.";
+  return fmt::format(
+      "The errors in the table were given, not drawn. But {}, so real machines deviate more. A Monte Carlo study with "
+      "errors.machines draws them.",
+      no_column_text(found));
 }
 
 /// The method, for a paper: the errors that the table leaves at zero.

@@ -232,6 +232,7 @@ Table change_table(const StoredResult& result, const YieldResult& yield) {
         {percent_column("share", "share of scatter"), [&](std::size_t p) { return percent_cell(shares->each[p]); }});
   }
   if (found.tested > 1 && !found.told.empty()) table.notes.push_back(selection_note(shares.has_value()));
+  if (shares) table.notes.push_back("share of scatter: of the scatter of " + result.responses[shares->response].name);
   fill(table, found.told, columns);
   const std::size_t unknown = changes.value.size() - found.known;
   add_line(table, found.known - found.told.size(), "whose effect is not certain", "whose effects are not certain");

@@ -458,10 +458,10 @@ std::string advice(const StoredResult& result, std::size_t r) {
     return "Nothing has to be done: as far as it shows, the limits are kept.";
   }
   if (judged && verdicts->passed()) {
+    const bool has_machines = monte_carlo_of(result).machines.has_value();
     return fmt::format(
-        "As far as it shows, the limits are kept{}. If machines have to be within them, ask for a yield (draws = \"per "
-        "machine\").",
-        judged_text(*verdicts));
+        "As far as it shows, the limits are kept{}. If machines have to be within them, ask for a yield ({}).",
+        judged_text(*verdicts), has_machines ? "judge = \"yield\"" : "draws = \"per machine\"");
   }
   std::string drivers = limit_drivers_text(result);
   if (drivers.empty()) drivers = drivers_text(result, r);

@@ -341,6 +341,7 @@ TEST(MonteCarloTable, ShowsNoEffectThatIsChanceAmongMany) {
       "rows are listed because their interval excludes zero, the largest loss first, errors whose share may be zero "
       "last; of many uncertain effects those that are listed are overestimated as a rule, so compare a change with "
       "the share of the scatter");
+  EXPECT_EQ(table.notes[3], "share of scatter: of the scatter of linear_deformation");
 }
 
 /// However certain its effect seems.
