@@ -8,7 +8,7 @@ namespace poesy {
 
 std::string poesy_version();  ///< The version of the program, such as "0.2.0".
 
-std::string poesy_year();     ///< The year in which this version was released, by CITATION.cff: "2026".
+std::string poesy_year();  ///< The year in which this version was released, by CITATION.cff: "2026".
 
 /// The commit from which this program was built, 40 hexadecimal digits, followed by "-dirty" if files differed from it;
 /// "unknown" if it was not built in a git checkout.
