@@ -258,7 +258,7 @@ void add_two(const ReportKind& kind, const ReportedResult& a, const ReportedResu
   const Comparison compared = comparison(kind, a, b);
   for (auto& line : comparison_answer(compared)) {
     const bool known = line.first == "Answer" && !page.answer.empty();
-    const std::string other = compared.a.ranked ? "Largest effects" : "Largest change";
+    const std::string other = compared.a.ranked ? "Largest effects" : "Changes";
     page.answer.emplace_back(known ? other : line.first, std::move(line.second));
   }
   if (kind.compare != nullptr) {
