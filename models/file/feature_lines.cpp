@@ -39,29 +39,29 @@ void check_signs(std::string_view key, const StudyValue& value) {
 }
 
 constexpr std::string_view kDigits = "0123456789";
+constexpr std::string_view kPlusAndMinus = "+-";
 
-/// Returns true if the text has a number with a sign directly before it, at or behind a place. The sign of an exponent,
-/// as in "1e-5", does not count.
+/// Returns true if the text has a number with a sign directly before it, at or behind a place after the first
+/// character. The sign of an exponent, as in "1e-5", does not count.
 bool has_signed_number(std::string_view text, std::size_t from) {
-  constexpr std::string_view kSigns = "+-";
-  for (std::size_t at = text.find_first_of(kSigns, from); at + 1 < text.size();
-       at = text.find_first_of(kSigns, at + 1)) {
-    const bool is_exponent = at > 0 && (text[at - 1] == 'e' || text[at - 1] == 'E');
-    if (!is_exponent && kDigits.find(text[at + 1]) != std::string_view::npos) return true;
+  for (std::size_t at = from; at + 1 < text.size(); ++at) {
+    const bool is_exponent = text[at - 1] == 'e' || text[at - 1] == 'E';
+    if (kPlusAndMinus.find(text[at]) != std::string_view::npos && !is_exponent &&
+        kDigits.find(text[at + 1]) != std::string_view::npos)
+      return true;
   }
   return false;
 }
 
 /// Returns true if the text is a tolerance of two limits, such as "+0.05 -0.02 mm" or "0 / -0.05 mm".
 bool has_two_limits(std::string_view text) {
-  constexpr std::string_view kSigns = "+-";
   const std::size_t first = text.find_first_not_of(' ');
   if (first == std::string_view::npos) return false;
-  const std::size_t digits = kSigns.find(text[first]) == std::string_view::npos ? first : first + 1;
+  const std::size_t digits = kPlusAndMinus.find(text[first]) == std::string_view::npos ? first : first + 1;
   const std::size_t end = std::min(text.find_first_not_of("0123456789.", digits), text.size());
   const std::size_t next = std::min(text.find_first_not_of(" /", end), text.size());
   if (end == digits || next + 1 >= text.size()) return false;
-  if (kSigns.find(text[next]) != std::string_view::npos && text.find_first_of(kDigits, next + 1) == next + 1)
+  if (kPlusAndMinus.find(text[next]) != std::string_view::npos && text.find_first_of(kDigits, next + 1) == next + 1)
     return true;
   return digits > first && has_signed_number(text, end);
 }

@@ -91,7 +91,7 @@ function check_ranked(examples)
     found = from_file.ranked;
     columns = 1:numel(found.responses);
     whole = from_tables.ranked;
-    for name = {'responses', 'units'}
+    for name = {'responses', 'units', 'smallest_first'}
       whole.(name{1}) = whole.(name{1})(columns);
     end
     for name = {'value', 'low', 'high'}
