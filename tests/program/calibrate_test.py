@@ -202,7 +202,7 @@ class Calibrate(ProgramTest):
         true = dict(stop_a=3e-4, stop_b=-2e-4, stop_c=1e-4, radius=4e-4, turn_a=0.65e-3, turn_b=-0.44e-3, rods=5e-4)
         errors = {error: sum(factor * true.get(name, 0.0) for name, factor in by.items()) for error, by in moved.items()}
         factors = [f'combinations.{name} = {{ '
-                   + ", ".join(f"{error} = {by[name]!r}" for error, by in moved.items() if abs(by.get(name, 0.0)) > 1e-12)
+                   + ", ".join(f"{error} = {float(by[name])!r}" for error, by in moved.items() if abs(by.get(name, 0.0)) > 1e-12)
                    + " }" for name in true]
         head = 'format = "poesy-study"\nversion = 1\nmechanism.file = "delta-six-rods.toml"\n'
         self.write("evaluate.toml", head)
