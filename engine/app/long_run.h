@@ -10,8 +10,9 @@
 /// The question that the program asks before a run that takes more than a day.
 namespace poesy::app {
 
-/// The least expected duration of `runs` runs of a study, one after the other, with this number of threads, s. It is 0
-/// if they are clearly shorter than a day, or if there is not enough memory to estimate the duration.
+/// A lower estimate of the duration (s) of `runs` runs of a study, one after the other, with this number of threads. It
+/// is 0 if these runs together are clearly shorter than a day, or if there is not enough memory to estimate the
+/// duration.
 double seconds_of_long_run(const Study& study, const Model& model, const PoseSet& poses, std::size_t threads,
                            std::size_t runs = 1);
 

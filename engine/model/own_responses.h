@@ -42,7 +42,8 @@ struct OwnResponse {
 /// moment. Empty for other products.
 std::optional<Dimension> dimension_of(const ResponseTerm& term, const ModelDescription& model);
 
-/// The description with the user's responses appended. A summary shows them first.
+/// The description with the user's responses appended to the list of responses. Summaries of results nevertheless show
+/// them first.
 ModelDescription described(ModelDescription model, const std::vector<OwnResponse>& own);
 
 /// The model with the user's responses appended. They are computed sample by sample, before any statistics. If a sample

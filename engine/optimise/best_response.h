@@ -17,7 +17,8 @@ struct Prices {
                        ///< Within::share x inner is >= 0
 };
 
-/// The sizes that one process allows at which cost + price x size is least.
+/// The best sizes under one process: of the sizes that it allows, those with the least cost + price x size (of a part,
+/// and of the inner part of its pair).
 struct ProcessResponse {
   double size;              ///< size at which cost + price x size is least, in [lo, hi]
   double cost;              ///< cost at these sizes

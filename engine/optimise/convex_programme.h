@@ -13,8 +13,9 @@ namespace poesy {
 
 /// The solution of a convex optimisation problem and its proof of optimality.
 struct ConvexSolution {
-  Allocation allocation;           ///< the tolerances with the least cost
-  double lower_bound = 0.0;        ///< lower bound on the cost with these processes
+  Allocation allocation;  ///< the tolerances with the least cost
+  /// Lower bound on the cost if each part is made by the one process that the problem states for it.
+  double lower_bound = 0.0;
   std::vector<double> multiplier;  ///< [limits] multipliers of the limits that prove the lower bound
 };
 

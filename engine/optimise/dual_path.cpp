@@ -123,7 +123,7 @@ DualPath::DualPath(const SizedProblem& problem, std::vector<std::size_t> working
     : problem_(problem),
       room_(1.0 - rounding_margin(problem.parts())),
       is_in_set_(problem.tight),  // tight limits are marked as if they were in the working set, so that they are never
-                                  // added: their parts are already fixed
+                                  // added: the parts that affect them are already fixed
       responses_(problem.parts()),
       sizes_(problem.parts()),
       inner_prices_(problem.parts()) {

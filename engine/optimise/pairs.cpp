@@ -47,7 +47,8 @@ struct PairGrowth {
   double together = kInfinity;  ///< if the inner part grows with it in proportion to its share
 };
 
-/// The growth of a pair that may use at most `most` of the room of each limit.
+/// How far the sizes of a pair of parts (outer and inner, Within) can grow if their effect on limit l, as a share of
+/// its room, may be at most most[l].
 PairGrowth pair_growth(const SizedProblem& problem, const Within& pair, std::span<const double> most) {
   PairGrowth growth;
   for (std::size_t l = 0; l < problem.limits; ++l) {

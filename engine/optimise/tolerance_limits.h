@@ -26,10 +26,11 @@ struct ToleranceLimits {
   double need(std::size_t l, std::span<const double> tolerance) const;
 };
 
-/// How much of one limit given tolerances use.
+/// The share of a limit's room (ToleranceLimits::room) that some tolerances use.
 struct LimitUse {
   std::size_t limit;  ///< position of the limit
-  double share;       ///< need / room: above 1 the limit is broken; infinite if the room is not positive
+  double share;  ///< combined effect of the tolerances / room of the limit; above 1 the limit is broken; infinite if
+                 ///< the room is not positive
 };
 
 /// The limit of which the largest share is used; the first one if several are equal. Preconditions: there is at least
@@ -38,7 +39,7 @@ LimitUse worst_use(const ToleranceLimits& limits, std::span<const double> tolera
 
 /// A problem without a feasible point: even the lowest tolerances break a limit.
 struct Infeasible {
-  std::size_t limit;  ///< the limit with the largest need / room
+  std::size_t limit;  ///< the limit of which the lowest tolerances use the largest share (LimitUse)
   double need;        ///< combined effect of the lowest tolerances on this limit
   double room;        ///< room of the limit
 };

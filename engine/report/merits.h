@@ -19,7 +19,7 @@ struct ReportKind;
 /// A setting in which two studies ask for something else, so that a figure of merit does not say which design is
 /// better.
 struct OtherRequirement {
-  std::string_view topic;  ///< what the setting requires: "limits", "wanted yields", "draws" or "poses"
+  std::string_view topic;  ///< what the setting is about: "limits", "wanted yields", "draws" or "poses"
   std::string name;        ///< full name of the setting: "analysis.limits.gap"
   std::string in_a;        ///< value in result A, for people; empty: none
   std::string in_b;        ///< value in the other result, for people; empty: none

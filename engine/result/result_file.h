@@ -105,7 +105,8 @@ struct StoredResult {
   std::vector<NamedUnit> responses;          ///< responses of the mechanism
   /// Indices of the responses that a summary shows; all, unless the model selects some.
   std::vector<std::size_t> headline;
-  std::vector<std::size_t> signed_headline;  ///< indices of the responses that a summary of coupled errors shows
+  std::vector<std::size_t> signed_headline;  ///< indices of the responses that a summary of coupled errors shows: those
+                                             ///< with a sign that the model selects, or else `headline`
   std::vector<std::size_t> constant;         ///< indices of responses that do not vary (stats/indices.h)
   RunFacts facts;                            ///< facts of the run, not part of the content
 

@@ -11,7 +11,8 @@ namespace poesy {
 
 /// One sample that was solved again, with its errors and responses.
 struct ReplayedSample {
-  /// Errors that the study varies together; other errors have the value of the background.
+  /// Errors that this sample varies. Other errors are constant: those that the study does not vary have the values of
+  /// its background, all others are zero. For a row of a table, all other errors are zero.
   std::vector<FactorIndex> varied;
   std::vector<double> values;     ///< [varied] values of these errors, SI
   std::vector<double> errors;     ///< [all errors] all errors of the sample, SI

@@ -46,19 +46,20 @@ struct SolveCounts {
   void state(Archive& archive);  ///< Reads or writes every count.
 };
 
-/// The counts of all cells together.
+/// The sum of these counts.
 SolveCounts total_of(std::span<const SolveCounts> cells);
 
 /// A sample that was not solved.
 struct FailedSample {
-  SampleIndex sample;  ///< number of the sample in its cell
+  SampleIndex sample;  ///< index of the sample among those of its cell (one error, or all together, at one pose)
   SolveStatus status;  ///< how its solve ended
 
   /// Returns true if both members are equal.
   bool operator==(const FailedSample&) const = default;
 };
 
-/// The first unsolved samples of one cell, or of one unit of a cell. Memory is allocated only if a sample fails.
+/// The first unsolved samples of one cell (one error, or all errors together, at one pose), or of one unit (block of
+/// samples) of a cell. Memory is allocated only if a sample fails.
 class FailedSamples {
  public:
   /// The largest number of failures that are kept for a cell. The first failures are kept, so they do not depend on how
@@ -128,7 +129,7 @@ struct ConvergenceResult {
   std::vector<std::uint8_t> reached;  ///< [responses x slots] 1 if the half-width at the end is small enough, else 0
   /// [responses x slots] half-width over |quantity| at the end; NaN for 0 / 0.
   std::vector<double> relative_half_width;
-  std::vector<std::uint64_t> samples;  ///< [slots] number of samples at each pose while the slot's errors vary
+  std::vector<std::uint64_t> samples;  ///< [slots] number of samples at each pose while the errors of the slot vary
 };
 
 /// The verdict on a limit of a response (engine/run/evaluation.h). SI.

@@ -56,11 +56,11 @@ class BucketScale {
   /// Precondition: 1 <= octave <= kCoarsest.
   explicit BucketScale(unsigned octave = 1) : octave_(octave) {}
 
-  /// The octave from which all buckets have the same width, as a biased exponent of a double.
+  /// The octave at and above which all buckets have the same width, as a biased exponent of a double.
   unsigned octave() const { return octave_; }
   bool is_coarsest() const { return octave_ == kCoarsest; }         ///< Returns true if there is no coarser scale.
   BucketScale coarser() const { return BucketScale(octave_ + 1); }  ///< The next coarser scale, with twice the width.
-  bool operator==(const BucketScale& other) const = default;        ///< Returns true if all buckets are equal.
+  bool operator==(const BucketScale& other) const = default;  ///< Returns true if both scales have the same buckets.
   /// The first of the buckets that have equal widths.
   std::uint64_t first_even() const { return std::uint64_t{octave_} << 7; }
   /// The page of the next coarser scale that contains a page.

@@ -17,8 +17,8 @@ constexpr std::size_t kPiece = 256;
 
 /// For each error, adds the row of each sample (numbers of four responses) to the sums of the bin in which the sample's
 /// value of this error lies. bins: number of the bin for each error and sample; those of the next error begin `stride`
-/// entries later. sums: [errors x bins]. Four errors are added at a time, so that a row of sums is not read again
-/// before it is written.
+/// entries later. sums: [errors x bins]. Four errors are added at a time: successive additions then go to different
+/// rows of sums, so none has to wait until the previous one is stored.
 POESY_EACH_INSTRUCTION_SET void add_rows(std::span<const EffectRow> rows, const std::uint8_t* bins, std::size_t stride,
                                          std::size_t errors, EffectRow* sums) {
   const auto add = [&](const EffectRow& row, std::size_t error, std::size_t sample) {

@@ -37,8 +37,9 @@ class MappedGradient {
   /// Adds machines. errors: [errors x machines], SI. rejected: [machines] 1 or 0.
   void add(std::span<const double> errors, std::span<const std::uint8_t> rejected);
 
-  std::uint64_t machines() const { return machines_; }    ///< The number of machines that were added.
-  std::uint64_t misjudged() const { return misjudged_; }  ///< The number of machines that LinearLimits misjudges.
+  std::uint64_t machines() const { return machines_; }  ///< The number of machines that were added.
+  /// The number of machines for which the linear map (LinearLimits) predicts the wrong verdict.
+  std::uint64_t misjudged() const { return misjudged_; }
 
   /// dY/dt, the derivative of the yield Y by the size t of one error. The interval is skewed_mean() over the machines.
   /// Its second moment includes four more machines that the map misjudges (kAddedRejects), with the mean square of the

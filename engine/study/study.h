@@ -84,7 +84,7 @@ inline constexpr std::array kErrorDimensions{Dimension::length, Dimension::angle
 
 /// Errors that are constant while others vary.
 struct Background {
-  std::vector<FactorIndex> factors;  ///< constant errors; those that the study varies are not held constant
+  std::vector<FactorIndex> factors;  ///< errors to hold constant, except those among them that the study varies
   double linear = 0.0;               ///< constant value of errors that are lengths, m
   double angular = 0.0;              ///< constant value of errors that are angles, rad
   double relative = 0.0;             ///< constant value of errors that are numbers, without unit

@@ -47,7 +47,8 @@ struct TableColumn {
   /// What the cells of a column contain. A `fact` is a column that `poesy export` writes and reading ignores.
   enum class Role { number, fact, label, text };
   Role role;               ///< what the cells contain
-  std::string_view name;   ///< KnownColumn::meant for a column of numbers, otherwise the title without the unit
+  std::string_view name;   ///< for a column of numbers, the name of the coordinate or factor (KnownColumn::meant);
+                           ///< otherwise the title without the unit
   std::string_view title;  ///< title in the header, with the unit; a view of the lines
   Dimension dimension = Dimension::number;  ///< dimension of the column's numbers
   double si = 1.0;                          ///< factor that converts the column's numbers to SI

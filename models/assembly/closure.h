@@ -28,8 +28,8 @@ class Closure {
 
   /// Computes the first-order change of ln det N by the errors of each sample. If the change is below the negative
   /// number chain::kNearing, a loop may open, so that the machine may be impossible to assemble. nearing: receives a
-  /// number for each sample. The result is 0 if the perfect loops are singular. It is also 0 if limbs cannot hold a
-  /// loop open, because they have no stiffness and do not deform each other.
+  /// number for each sample. The result is 0 if the loops without errors are singular. It is also 0 if limbs cannot
+  /// hold a loop open, because they have no stiffness and do not deform each other.
   void find_nearing(const SampleBlock& samples, std::span<double> nearing);
 
   /// Returns true if errors may open a loop. nearing: from find_nearing().
@@ -47,10 +47,11 @@ class Closure {
   SolveStatus judged(const Solution& found, std::span<const std::vector<Transform>> frames);
 
   /// Returns true if a machine cannot be assembled. frames: as for opens(). Returns false if the descent does not come
-  /// to rest, or if the perfect loops are singular.
+  /// to rest, or if the loops without errors are singular.
   bool is_impossible(std::span<const std::vector<Transform>> frames);
 
-  /// Returns true if the perfect loops are regular. The first call computes the loops, and the slopes of ln det N.
+  /// Returns true if the loops without errors are regular. The first call computes these loops, and the first-order
+  /// change of ln det N (class comment) per unit of each error.
   bool is_regular();
 
  private:
@@ -58,7 +59,7 @@ class Closure {
 
   const AssemblyModel* model_;
   const Nominal* pose_;
-  std::optional<Loops> loops_;   ///< perfect loops, computed when they are first needed
+  std::optional<Loops> loops_;   ///< loops without errors, computed when they are first needed
   std::vector<double> nearing_;  ///< [errors] first-order change of ln det N per unit of each error
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Only kernels.cpp includes this file. It is compiled once for each instruction set.
+// Part of kernels.cpp alone, which is compiled once for each instruction set.
 
 #include <type_traits>
 #include <vector>

@@ -90,13 +90,14 @@ struct KernelMark {
 
 /// The data that a sample's responses need, in the order of response_values().
 struct KernelReport {
-  bool deforms;                             ///< true if mismatch is reported
-  bool has_motions;                         ///< true if displacements of bodies are reported
-  bool has_tool;                            ///< true if the displacement of the tool point is reported
-  bool has_forces;                          ///< true if energy, forces and moments are reported
-  double metric[6];                         ///< diagonal of the metric; in its norm, the square of a twist is in m^2
-  double origin[3];                         ///< nominal origin of the platform
-  double share;                             ///< factor 2 / (number of independent loops) of mean squares
+  bool deforms;      ///< true if mismatch is reported
+  bool has_motions;  ///< true if displacements of bodies are reported
+  bool has_tool;     ///< true if the displacement of the tool point is reported
+  bool has_forces;   ///< true if energy, forces and moments are reported
+  double metric[6];  ///< diagonal of the metric; in its norm, the square of a twist is in m^2
+  double origin[3];  ///< nominal origin of the platform
+  double share;  ///< factor by which sums over the limbs of squared mismatches are multiplied before the root is taken:
+                 ///< 2 / (number of independent loops)
   double axes[9];                           ///< rotation from the kernel's axes to the base's axes
   double arm[3];                            ///< nominal vector from the platform's origin to the tool point
   double length;                            ///< unit of lengths (m)

@@ -104,8 +104,8 @@ class PoseProblem {
   Matrix6 from_units_;               ///< from twists in the kernel's units to twists in the base frame and SI
   std::vector<JointPlace> marks_;    ///< joints whose frames are reported
   std::vector<Entry> entries_;       ///< components of frames' errors that errors of the model change
-  std::vector<Addition> additions_;  ///< additions of all errors, error by error
-  std::vector<std::size_t> added_;   ///< [errors + 1] index of each error's first addition in additions_
+  std::vector<Addition> additions_;  ///< contributions of the model's errors to entries_, ordered by error
+  std::vector<std::size_t> added_;   ///< [errors + 1] index in additions_ at which each error's contributions begin
   std::vector<std::size_t> first_;   ///< [limbs + 1] index of each limb's first frame among all frames
   std::vector<KernelError> errors_;  ///< [frames of all limbs] error of each frame
   /// First-order coordinates (KernelMap), a row for each. Columns: change per unit of each of entries_, then the

@@ -28,11 +28,11 @@ inline constexpr double kNearing = -0.5;
 /// the mismatch delta_mu at which the joints come to rest, the removable part is
 ///     r = J0 (J0^T W J0)^-1 J0^T W delta_mu,   J0: J at nominal displacements without errors.
 /// In a machine that can be assembled, r is small: of the order of the mismatch times the errors. In a machine that
-/// cannot be assembled, the loops are closed as far as possible and then bend away from each other: there is a motion x
-/// of the joints that changes the mismatch at nominal displacements (J0 x), but hardly at the displacements at which
-/// the joints rest (J x). Then N x nearly vanishes, where N = J^T W J, while r does not vanish. Newton's matrix is M =
-/// N + C(r) (BlockKernel); C(r) is the part of minus the derivative of J^T W delta_mu that a residual r causes. A
-/// machine cannot be assembled if
+/// cannot be assembled, r does not vanish: the joints rest although the loops are open. There is a motion x of the
+/// joints that changes the mismatch at nominal displacements (J0 x), but hardly at the displacements at which the
+/// joints rest (J x). So N x nearly vanishes, where N = J^T W J. Newton's matrix, minus the derivative of J^T W
+/// delta_mu, is M = N + C(delta_mu) (BlockKernel), where C(y) is the term that a mismatch y adds to N. With the
+/// removable part r as this mismatch, a machine cannot be assembled if
 ///     N - 2 C(r)
 /// is not positive definite. This criterion does not depend on units or on the size of the machine. At its boundary the
 /// loops just close (theory.md, "Machines that cannot be assembled").
@@ -72,7 +72,7 @@ class Assembly {
   const ParallelChain* chain_;
   std::vector<double> nominal_;  ///< [all joints] nominal displacements
   lie::Matrix6<double> W_ = lie::Matrix6<double>::Zero();
-  double reach_ = 1.0;        ///< reach of the metric (m); 1 without a metric, which weighs 1 m like 1 rad
+  double reach_ = 1.0;        ///< reach of the metric (m). Without a metric it is 1, so 1 m weighs as much as 1 rad.
   bool is_asked_ = false;     ///< true if is_regular() has been called since prepare()
   bool is_singular_ = false;  ///< true if the perfect mechanism is singular; valid if is_asked_
   FirstOrder first_order_;

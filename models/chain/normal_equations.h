@@ -29,10 +29,11 @@ class NormalEquations {
 
   /// Makes J^T W J regular from now on, although idle freedoms (ParallelChain::idle) make it singular. Each idle
   /// freedom is a combination of these columns [passive joints] that does not move the platform; for each, r^T r is
-  /// added to the matrix, where r is the direction of this combination.
+  /// added to the matrix, where the row r is the unit direction of this combination times the root of the mean diagonal
+  /// entry of J^T W J.
   void hold_idle(std::span<const lie::Screw<double>> columns, const lie::Matrix6<double>* W);
-  /// [idle freedoms x passive joints] The directions r of the idle freedoms: hold_idle() adds the sum of r^T r to J^T W
-  /// J.
+  /// [idle freedoms x passive joints] The rows r of the idle freedoms. The sum of r^T r is added to J^T W J; see
+  /// hold_idle().
   std::span<const double> idle() const { return idle_; }
 
   /// Solves for another delta_mu with the same matrix, after a solve that returned true.
@@ -59,7 +60,7 @@ class NormalEquations {
   std::size_t size_;
   std::size_t idle_freedoms_;
   double reach_;
-  std::vector<double> idle_;    ///< [idle x size] directions r of hold_idle()
+  std::vector<double> idle_;    ///< [idle x size] rows r of hold_idle()
   std::vector<double> matrix_;  ///< [size x size] lower triangle of J^T W J; factor() replaces it by its factors L D
                                 ///< L^T: L below the diagonal, 1 / D on it
   std::vector<lie::Screw<double>> pull_;      ///< [limbs] sum of the residuals of each limb's pairs: added if the limb

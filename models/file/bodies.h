@@ -8,8 +8,8 @@
 /// The bodies of a mechanism file, and the bodies to which limbs refer.
 namespace poesy::file {
 
-/// The base, the platform and the other bodies with their copies, at home. platform: base_T_platform at home. Throws
-/// InputError if two bodies have the same name.
+/// The base, the platform and the other bodies, including the copies that the key `copies` asks for, at home. platform:
+/// base_T_platform at home. Throws InputError if two bodies have the same name.
 std::vector<assembly::Body> bodies_of(const Numbers& numbers, const Transform& platform);
 
 /// The index of the body that `reference` names for copy number `copy` of a limb; `usual` if there is no reference.

@@ -34,7 +34,7 @@ struct Mobility {
   /// The motion of loose_body in words: "joint 'A' of limb 2 is loose, and the platform turns about (0, 0, 1)"; empty
   /// if no body moves.
   std::string loose_text = {};
-  Place loose_place = {};                    ///< place of the joint that moves most in this motion
+  Place loose_place = {};                    ///< place of the joint that moves most in the motion of loose_text
   std::size_t coordinates_rank = 0;          ///< rank of the pose coordinates as functions of the joints
   std::vector<double> singular_values = {};  ///< singular values of the loop Jacobian, largest first
   /// Name of a coordinate that depends on the others; empty if there is none.

@@ -22,7 +22,7 @@ class PoseTracker {
   Tracked track(std::span<const double> pose) const;
 
  private:
-  static constexpr std::size_t kMostRemembered = 16;  // a few for each thread
+  static constexpr std::size_t kMostRemembered = 16;  // poses; a few for each of several threads
 
   using Remembered = std::pair<std::vector<double>, Tracked>;  // a pose and its result
 

@@ -65,12 +65,14 @@ class Tracker {
   std::vector<std::size_t> given_;  ///< indices of the given numbers in a state
   std::vector<double> units_;       ///< [given] SI value of the unit of each given number
   std::vector<std::size_t> free_;   ///< indices of all other numbers in a state, ascending
-  std::vector<Drive> shared_;       ///< drives of several joints, each of which is one unknown at its first joint
-  /// For each limb, the joints that are not given and share no drive with others, by their indices among the limb's
-  /// joints that move.
+  std::vector<Drive> shared_;  ///< drives that move several joints; each such drive is one unknown, kept at the index
+                               ///< of its first joint
+  /// For each limb, the joints whose displacements are not given and that share no drive with others, as indices among
+  /// the limb's joints that move.
   std::vector<std::vector<std::size_t>> limb_joints_;
-  std::vector<std::size_t> limb_ranks_;  ///< [limbs] rank of the columns of these joints at home
-  std::size_t idle_ = 0;  ///< number of idle freedoms: number of all limb_joints_ minus sum of limb_ranks_
+  std::vector<std::size_t> limb_ranks_;  ///< [limbs] rank of the columns of the joints in limb_joints_ at home
+  std::size_t idle_ =
+      0;  ///< number of idle freedoms: total number of joints in limb_joints_ minus the sum of limb_ranks_
 };
 
 }  // namespace poesy::file

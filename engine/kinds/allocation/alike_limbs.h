@@ -6,14 +6,14 @@
 
 #include "engine/study/study.h"
 
-/// Compares the joints of limbs, because limbs with other joints are not made alike.
+/// Compares the joints of limbs, because limbs with different joints are not made alike.
 namespace poesy {
 
 /// A commented line of a template that names the first two limbs with errors and the same joints, as an example of the
 /// key identical_limbs. Empty if there are no such limbs.
 std::string shown_identical_limbs(const Study& study);
 
-/// A warning that these limbs have other joints than each other. Empty if all have the same joints, or if the mechanism
+/// A warning that these limbs do not all have the same joints. Empty if all have the same joints, or if the mechanism
 /// has no joints to compare. limbs: numbers, counted from 1.
 std::string unlike_limbs_text(std::span<const std::size_t> limbs, const Study& study);
 

@@ -31,7 +31,7 @@ class RelativeLimits {
   std::size_t size() const { return limits_.size(); }  ///< The number of limits.
   /// Position of the response that limit k limits.
   std::size_t response(std::size_t k) const { return limits_[k].response; }
-  /// The value from which distances under limit k are counted at a pose, SI.
+  /// The value from which limit k measures distances at a pose, SI.
   double centre(std::size_t k, PoseIndex pose) const { return centre_(k, pose.value); }
   /// The distance from the centre to the nearer end of the limit, SI; zero or negative if the centre is not within the
   /// limit. For a limit on a spread, half the limit: if no value is farther than this from the mean, the spread keeps

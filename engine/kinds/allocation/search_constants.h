@@ -34,7 +34,7 @@ inline constexpr double kFinalLoadTolerance = 1e-5;
 /// machines (D66).
 inline constexpr double kScreeningLoad = 0.75;
 /// The number of all machines divided by the number in a pilot, which is a trial of only a part of the machines. Make
-/// it smaller if the deciding load of the pilot is too noisy to approach the yield.
+/// it smaller if the deciding load of the pilot (deciding_load()) is too noisy to approach the yield.
 inline constexpr std::size_t kPilotOf = 8;
 /// The smallest number of machines in a pilot that looks for rejects among machines that were screened out.
 inline constexpr std::size_t kMinPilot = 20'000;

@@ -15,7 +15,7 @@ namespace poesy {
 namespace {
 
 constexpr std::size_t kMostRows = 10;  // largest number of values in the table
-constexpr int kValueDigits = 6;        // so many that measured and fitted values differ
+constexpr int kValueDigits = 6;        // significant digits: enough to show that measured and fitted values differ
 constexpr int kResidualDigits = 3;
 
 /// The size by which a value is ordered: its residual over its standard deviation, or its residual if the noise is not

@@ -52,7 +52,7 @@ struct CalibrationResult {
   std::vector<std::string> value_units;  ///< SI units of the measured values
   /// Position of each value's row in the table of measurements.
   Array<std::uint64_t, axis::Value> value_row;
-  /// Position of the row to which a distance is measured; for other values that of their own row.
+  /// For a distance: position of the row of the other pose. For any other value: the same as value_row.
   Array<std::uint64_t, axis::Value> value_to;
   std::vector<std::string> rows;  ///< names of the rows of the table of measurements
   /// The pose of each row, in its coordinates, SI.
@@ -103,10 +103,10 @@ struct CalibrationResult {
   Array<std::uint64_t, axis::Next> candidate;  ///< positions of these poses among the candidates
 
   std::vector<NamedUnit> typed;              ///< parameters for the controller; `description` is the expression
-  Array<double, axis::Typed> typed_nominal;  ///< values of the parameters without errors
-  /// Values of the parameters while the machine was measured: with the errors that the controller already corrected.
+  Array<double, axis::Typed> typed_nominal;  ///< values of these parameters without errors
+  /// Values of these parameters while the machine was measured: with the errors that the controller already corrected.
   Array<double, axis::Typed> typed_present;
-  Array<double, axis::Typed> typed_value;  ///< values of the parameters with the estimated errors
+  Array<double, axis::Typed> typed_value;  ///< values of these parameters with the estimated errors
   Array<double, axis::Typed> typed_sd;     ///< standard deviations of the values
 
   std::string file;         ///< name of the table of measurements

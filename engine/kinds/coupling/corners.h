@@ -43,7 +43,7 @@ struct CornerTable {
 /// The worst corners (choices of the sign of each block) of a subset of sources at one size and pose.
 struct WorstCorners {
   std::vector<double> value;  ///< [responses] largest |response| over the solved corners; NaN if none was solved
-  /// [responses] Signs of the blocks at the corner with this value; empty if none was solved.
+  /// [responses] Signs of the blocks of errors at the corner that gives `value`; empty if none was solved.
   std::vector<Signs> signs;
   std::uint64_t tried = 0;     ///< number of corners that were tried
   std::uint64_t unsolved = 0;  ///< number of tried corners without a solution
@@ -114,12 +114,12 @@ class CornerSearch {
   std::size_t responses_;
   std::vector<Direction> directions_;  ///< weighted sums of responses, see the class comment
   std::unique_ptr<Evaluator> evaluator_;
-  std::vector<double> zeros_;          ///< a zero for each error of the model
-  std::vector<double> at_size_;        ///< [responses] rounding of each response at the present size
-  std::vector<Tried> tried_;           ///< [subsets] corners of each subset
-  std::vector<Wanted> wanted_;         ///< corners that wait to be solved, in order
-  std::vector<double> values_;         ///< errors of the samples that are solved together
-  std::vector<double> outcomes_;       ///< responses of these samples
+  std::vector<double> zeros_;     ///< a zero for each error of the model
+  std::vector<double> at_size_;   ///< [responses] rounding of each response at the size of errors that is being solved
+  std::vector<Tried> tried_;      ///< [subsets] corners of each subset
+  std::vector<Wanted> wanted_;    ///< corners that wait to be solved, in order
+  std::vector<double> values_;    ///< errors of the samples that are solved together
+  std::vector<double> outcomes_;  ///< responses of these samples
   std::vector<SolveStatus> status_;    ///< how each of these samples ended
   std::vector<std::uint32_t> counts_;  ///< iterations of each of these samples
 };

@@ -11,7 +11,7 @@ namespace poesy {
 
 /// Runs a Monte Carlo study on a pool of threads; see run_sensitivity(). Memory does not grow with the number of
 /// samples: the samples of a pose are dropped when its quantiles are computed, except the packed sketches that
-/// MonteCarloCollector keeps for a longer study. analysis: only `conf_level`, `quantiles` and `limits` are used.
+/// MonteCarloCollector keeps so that the study can be continued with more samples. analysis: that of the plan's study.
 /// calibration: that of the machines; null: machines are not calibrated.
 std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,
                                                 const RunOptions& options,

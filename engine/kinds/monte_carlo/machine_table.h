@@ -96,9 +96,11 @@ class MachineTable {
   /// The number of machines, from machine 0 on, for which it is recorded whether they are rejected: mapped(), or all
   /// machines.
   std::size_t kept() const { return kept_; }
-  /// The groups of errors that were measured on parts; empty if there are none or the study has no limits.
+  /// The groups of errors that were measured on parts. Empty if there are none, if the study has no limits, or if the
+  /// influence of the parts cannot be computed (PartGroups::known is false).
   const PartGroups& parts() const { return parts_; }
-  /// Whether the study has limits and errors that were measured on parts.
+  /// Whether the study has limits and errors that were measured on parts, even if the influence of the parts cannot be
+  /// computed.
   bool has_parts() const { return !parts_.each.empty() || !parts_.known; }
 
   /// The poses at which sums for main effects are computed (engine/run/effect_poses.h).

@@ -16,8 +16,8 @@ namespace poesy {
 std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& model, double conf_level,
                                                  const RunOptions& options);
 
-/// The bytes that the group /sensitivity needs for the numbers of responses and errors, if axes have these lengths. The
-/// same in memory and in a file.
+/// The size in bytes of the numeric arrays of the group /sensitivity if their axes have these lengths. It is the same
+/// in memory and in a file.
 std::size_t sensitivity_bytes(const AxisLengths& lengths);
 
 /// Runs and reports sensitivity studies, which compute the effect of each error while all others are constant.

@@ -21,7 +21,8 @@
 namespace poesy {
 
 namespace axis {
-using PanelQuantity = Axis<"quantity">;  ///< Quantities with indices: first the responses, then the signed vectors.
+using PanelQuantity = Axis<"quantity">;  ///< Quantities with indices: first the responses, then vectors of components
+                                         ///< with a sign (SignedVector).
 using PanelRow = Axis<"row">;  ///< Numbers that a solve gives: first the responses, then the components of the model's
                                ///< additional outputs (Detail in model/model.h).
 using GroupPair = Axis<"pair">;          ///< Pairs of groups.
@@ -36,13 +37,14 @@ struct IndexPanel {
   /// Describes the panel of samples of this study. Precondition: the study is of Sobol' indices.
   IndexPanel(const Study& study, std::size_t pose_count);
 
-  std::vector<ErrorGroup> groups;     ///< groups of errors
-  std::vector<SignedVector> vectors;  ///< signed vectors of the model
-  std::size_t samples;                ///< number of samples in the study
-  std::vector<GroupPair> pairs;       ///< pairs of groups, see group_pairs(); empty without second-order indices
-  std::size_t responses;              ///< number of responses
-  std::size_t details;  ///< number of components of the model's additional outputs; 0 if no vector needs them
-  std::size_t poses;    ///< number of poses
+  std::vector<ErrorGroup> groups;  ///< groups of errors
+  /// Vectors of components with a sign (SignedVector), for which indices are computed too.
+  std::vector<SignedVector> vectors;
+  std::size_t samples;           ///< number of samples in the study
+  std::vector<GroupPair> pairs;  ///< pairs of groups, see group_pairs(); empty without second-order indices
+  std::size_t responses;         ///< number of responses
+  std::size_t details;           ///< number of components of the model's additional outputs; 0 if no vector needs them
+  std::size_t poses;             ///< number of poses
   /// [groups] 1 if an error of the group is correlated with an error of another group, otherwise 0. A group with 1 gets
   /// neither S1 nor ST.
   std::vector<std::uint8_t> split;
