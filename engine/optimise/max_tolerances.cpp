@@ -100,7 +100,8 @@ std::variant<MaxTolerances, Infeasible> maximise_tolerances(const ToleranceLimit
     return !find_infeasible(limits, tolerances_at(factor, proportions, ranges));
   };
   if (const auto worst = find_infeasible(limits, tolerances_at(0.0, proportions, ranges))) return *worst;
-  // Between two neighbouring corners, the same parts are at a bound.
+  // Between two neighbouring corners (factors at which a part reaches or leaves a bound), the same parts are at a
+  // bound.
   const std::vector<double> factors = corners(proportions, ranges);
   const auto next = std::ranges::partition_point(factors, keeps);
   const double from = *std::prev(next);

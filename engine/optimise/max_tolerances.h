@@ -30,9 +30,9 @@ struct MaxTolerances {
 };
 
 /// Finds the largest factor for which T_i = factor x proportion_i, clamped to [lo_i, hi_i], keeps all limits. Between
-/// two factors at which some part reaches a bound, it has a closed form. A part of infinite proportion gets its upper
-/// bound. Proportions of 1 give equal tolerances. Preconditions: proportions [parts] > 0; ranges [parts]; the
-/// proportion of a part with effect is finite.
+/// two neighbouring factors at which some part reaches a bound, the largest factor has a closed form. A part of
+/// infinite proportion gets its upper bound. Proportions of 1 give equal tolerances. Preconditions: proportions [parts]
+/// > 0; ranges [parts]; the proportion of a part with effect is finite.
 std::variant<MaxTolerances, Infeasible> maximise_tolerances(const ToleranceLimits& limits,
                                                             std::span<const double> proportions,
                                                             std::span<const ToleranceRange> ranges);

@@ -44,7 +44,7 @@ std::vector<SizedProcess> processes_of_pair(const Within& pair, const std::vecto
 /// growth.
 struct PairGrowth {
   double alone = kInfinity;     ///< if only the outer part grows
-  double together = kInfinity;  ///< if the inner part grows with it in proportion to its share
+  double together = kInfinity;  ///< if the inner part also grows, by share x the growth of the outer part
 };
 
 /// How far the sizes of a pair of parts (outer and inner, Within) can grow if their effect on limit l, as a share of

@@ -43,7 +43,8 @@ concept SampledUnits = requires(const Job& job) {
 ///     bool is_whole(std::size_t n) const            whether unit n is as large as in any longer study
 ///     std::vector<Estimate> estimates(const Sums&, const Unit* last) const   estimates that decide after a round
 ///
-/// If the last unit is not whole, its sums are separate until the end. A longer study continues without that unit.
+/// If the last unit is not whole (smaller than in a longer study), its sums are kept separate until the end. A longer
+/// study continues without that unit.
 template <class Job>
 class UnitFold {
  public:

@@ -97,7 +97,7 @@ class CheckpointFiles {
 
   const std::string& newer() const { return newer_; }  ///< The path of the newer checkpoint, RESULT.h5.part.
   const std::string& older() const { return older_; }  ///< The path of the older checkpoint, RESULT.h5.part.1.
-  /// The paths of those of both that exist, the newer one first.
+  /// The paths of the checkpoint files that exist, the newer one first.
   std::vector<std::string> existing() const;
   bool exist() const;  ///< Returns true if there is a checkpoint file, intact or not.
   /// The newest intact checkpoint; none if there is no file. Throws FileError if there are files but none is intact.

@@ -79,7 +79,8 @@ class AssemblyKernel {
   }
 
   void end(std::size_t at, Mask left, Mask doubtful, T iterations) const {
-    // Samples that start from the series are not doubtful: it is smooth and so leads to no other solution.
+    // Samples that start from the series are not doubtful, because the series is smooth and so leads to no other
+    // solution.
     put_ends(bits(left), problem_.start.is_used ? 0 : bits(doubtful), T::kLanes, block_.ends + at);
     double counted[T::kLanes];
     iterations.store(counted);

@@ -129,8 +129,8 @@ class DeformationEvaluator final : public Evaluator {
     return values;
   }
 
-  /// [varied components x samples] The values of the varied components: the constant part of each component plus all
-  /// additions.
+  /// [varied components x samples] The values of the varied components: the constant part of each component plus the
+  /// contributions of all varied errors.
   std::span<const double> combined(const SampleBlock& samples) {
     values_.resize(varied_.size() * samples.count);
     for (std::size_t row = 0; row < varied_.size(); ++row) {

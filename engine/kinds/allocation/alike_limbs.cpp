@@ -12,8 +12,8 @@
 namespace poesy {
 namespace {
 
-/// The joints of each limb that move, as letters in their order: "UPR" of limb 1. A limb has no entry if it has no
-/// joints of its own, as a slide below all limbs.
+/// The joints of each limb that move, as letters in their order: "UPR" of limb 1. A limb has no entry if none of its
+/// joints moves.
 using LimbJoints = std::map<std::size_t, std::string>;
 
 LimbJoints joints_of(const Study& study) {

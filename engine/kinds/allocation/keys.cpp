@@ -83,7 +83,8 @@ void check_own_errors(const StudySection& block, std::span<const AllocatedPart> 
   }
 }
 
-/// Adds a warning to the study if the block joins errors of limbs with other joints, unless another block did.
+/// Adds a warning to the study if the block joins errors of limbs with different joints, unless an earlier block has
+/// caused this warning.
 void doubt_unlike_limbs(const StudySection& block, Study& study) {
   const auto identical = block.find("identical_limbs");
   if (!identical) return;

@@ -145,12 +145,12 @@ struct AllocationResult {
   Parts<std::string> part_unit;         ///< SI unit of the tolerance T: "m" or "rad"
   Parts<double> tolerance;              ///< tolerance T: the drawing states +-T, or T as the size of a zone
   Parts<double> sigma;                  ///< standard deviation of the errors about their mean
-  Parts<double> sigmas;                 ///< number of sigma in T: T = shift + sigmas x sigma
-  Parts<double> shift;                  ///< offset of the mean, in either direction, in the unit of T
-  Parts<double> cost;                   ///< cost of the part; NaN if the aim has no costs
-  Parts<double> share;                  ///< share of the total cost
-  Parts<double> mean_square_share;      ///< share of the part in the mean square under the tightest limit; the shares
-                                        ///< of all parts add up to 1
+  Parts<double> sigmas;             ///< number of sigma in T: T = shift + sigmas x sigma; for a zone see AllocatedPart
+  Parts<double> shift;              ///< offset of the mean, in either direction, in the unit of T
+  Parts<double> cost;               ///< cost of the part; NaN if the aim has no costs
+  Parts<double> share;              ///< share of the total cost
+  Parts<double> mean_square_share;  ///< share of the part in the mean square under the tightest limit; the shares
+                                    ///< of all parts add up to 1
   /// mean_square_share divided among the errors: the shares of a part's errors add up to that of the part. NaN for an
   /// error that is in no part.
   Array<double, axis::Factor> error_mean_square_share;

@@ -63,9 +63,9 @@ ToleranceDesign with_screened_loads(ToleranceDesign design);
 /// Solves only a part of all machines (a pilot) at the design's tolerances. Returns whether one of its rejects is a
 /// machine that was screened out.
 bool misses_rejects(const SearchProblem& problem, const ToleranceDesign& design);
-/// Multiplies all tolerances by one factor, except those that stay [parts], so that the screened machines have as many
-/// rejects as the design allows. If no factor that was tried keeps the yield for these machines, the design is returned
-/// unchanged, and the certificate decides.
+/// Multiplies all tolerances by one factor, except those of the parts marked in `stays` [parts], so that the screened
+/// machines have as many rejects as the design allows. If no factor that was tried keeps the yield for these machines,
+/// the design is returned unchanged, and the certificate decides.
 ToleranceDesign scale_screened(const SearchProblem& problem, const ToleranceDesign& from,
                                const std::vector<bool>& stays);
 

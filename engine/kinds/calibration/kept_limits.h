@@ -18,9 +18,9 @@ class KeptLimits {
   /// Draws the machines. known: estimates and covariance of the machine's errors.
   KeptLimits(const Study& study, const Model& model, const calibration::Knowledge& known);
 
-  /// [components x machines] Solves the machines at a pose, and returns what remains of each. The controller moves the
-  /// drives to where those of the perfect mechanism are at `drive_at`. Empty if no limit can be judged. May be called
-  /// from several threads, each with an own `machine`.
+  /// [components x machines] Solves the machines at a pose, and returns the displacement of each that remains after the
+  /// correction. The controller moves the drives to where those of the perfect mechanism are at `drive_at`. Empty if no
+  /// limit can be judged. May be called from several threads, each with an own `machine`.
   calibration::Matrix left_at(calibration::ExactMachine& machine, std::span<const double> pose,
                               std::span<const double> drive_at, const calibration::Corrected& corrected) const;
   /// Adds what left_at() returned for the next pose.

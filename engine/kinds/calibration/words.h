@@ -20,7 +20,7 @@ std::string residual_text(const CalibrationResult& found);
 std::vector<std::string> unsure_notes(const CalibrationResult& found);
 /// Sentences that name the estimates that are not determined, that are correlated, or that are below the noise.
 std::vector<std::string> estimate_notes(const CalibrationResult& found);
-/// What remains below this is rounding, m or rad.
+/// A remaining displacement below this (m or rad) counts as rounding.
 inline constexpr double kLeftRounding = 1e-12;
 
 /// A component of the displacement that remains after calibration.
@@ -30,19 +30,19 @@ struct LeftComponent {
   double rms;             ///< root mean square over the poses, including the uncertainty, SI
 };
 
-/// The components that remain. Components of rounding size are left out, and those of the tool point if they are those
-/// of P, because there is no tool or the platform does not turn.
+/// The components of the remaining displacement that are more than rounding. Those of the tool point are left out if
+/// they equal those of P, because there is no tool or the platform does not turn.
 std::vector<LeftComponent> left_components(const CalibrationResult& found);
 
-/// The length of the displacement that remains of the tool's point, or without a tool of the platform's origin, over
-/// the poses, including the uncertainty, SI.
+/// The length of the remaining displacement of the tool point (without a tool: of the platform's origin) over the
+/// poses, including the uncertainty, SI.
 struct LeftLength {
   NamedUnit named;    ///< "tip_position" or "position"
   std::size_t first;  ///< position of its x component on the axis `moved`; y and z follow
   double rms;         ///< root mean square over the poses
 };
 
-/// None if nothing of it remains.
+/// The length of the remaining displacement; none if that displacement is only rounding.
 std::optional<LeftLength> left_length(const CalibrationResult& found);
 
 /// Sentences about the displacement that remains after calibration.

@@ -20,7 +20,7 @@ namespace poesy {
 /// A source of errors: errors whose joint effect the study computes.
 struct ErrorSource {
   std::string name;                  ///< name in tables; '+' joins it to the names of other sources
-  std::vector<FactorIndex> factors;  ///< errors that the study names; the pattern may exclude some
+  std::vector<FactorIndex> factors;  ///< errors that the study names; the ErrorPattern may exclude some
 };
 
 /// A rule that states which errors of a source are not zero, and which of these have the same sign.
@@ -109,7 +109,7 @@ using Subset = Axis<"subset">;  ///< Subsets of the sources, whose errors act to
 struct CouplingResult {
   /// A number for each response, size, subset of the sources and pose.
   using Curves = Array<double, axis::Response, axis::Size, axis::Subset, axis::Pose>;
-  /// A number that summarises a curve over the poses.
+  /// A number for each response, size and subset, such as the largest magnitude of one of the Curves over the poses.
   template <class T>
   using Summary = Array<T, axis::Response, axis::Size, axis::Subset>;
 
@@ -168,14 +168,14 @@ inline bool has_worst_cases(const CouplingResult& found) { return !found.worst_c
 /// and pose, for each subset S of the sources. The effect of errors is the response itself, so a response must be zero
 /// if all errors are zero.
 ///
-///     effect           all errors of S at once: the curve of a single source, or the coupled one
+///     effect           the response to all errors of S at once
 ///     sum              sum over the sources in S of the effect of each alone
 ///     interaction      effect - sum; 0 for a single source
 ///     first_order_sum  sum over the blocks of S of |effect of the block alone| (see error_blocks)
 ///     worst_case       the largest |response| that was found with either sign of each block (coupling/corners.h)
 ///     root_sum_square  root of the sum over the blocks of S of (effect of the block alone)^2
-///     cancellation     1 - |sum| / (sum over the sources of |effect of each|): 0 where no source opposes another or
-///                      where no more than rounding is cancelled, 1 where they cancel
+///     cancellation     1 - |sum| / (sum over the sources in S of |effect of each alone|): 0 where no source opposes
+///                      another or where no more than rounding is cancelled, 1 where they cancel
 ///
 /// To first order, first_order_sum is the largest effect of the blocks if their signs are unknown, and root_sum_square
 /// is the root mean square effect if both signs of each block are equally likely. Neither first_order_sum nor

@@ -120,9 +120,8 @@ struct SplitDraws {
   SplitDraws(SplitBlock split, std::size_t subsets);  ///< Prepares the mixtures of all subsets of groups. subsets:
                                                       ///< their number.
 
-  SplitBlock block;                                       ///< the block of correlated errors
-  std::vector<Mixture> mixtures;                          ///< [subsets] mixtures, by the number of the subset that is
-                                                          ///< drawn
+  SplitBlock block;               ///< the block of correlated errors
+  std::vector<Mixture> mixtures;  ///< [subsets] mixtures; the index is the number of the subset of groups that is drawn
   Array<double, axis::BlockError, axis::Sample> scores;   ///< [block errors x samples] normal scores in sample A
   Array<double, axis::BlockError, axis::Sample> normals;  ///< [block errors x samples] independent normals from which
                                                           ///< the scores of B are computed
@@ -157,8 +156,8 @@ class PanelEvaluator {
   /// independent samples; the mixture C is A with the errors of the group from B.
   struct GroupRows {
     OfSamples<axis::PanelQuantity, axis::ErrorGroup> total;  ///< squared difference of the outcomes of A and C
-    /// Squared difference of A and B minus that of B and C. Its mean is twice the covariance of B and C, which is the
-    /// variance that the group causes alone.
+    /// Squared difference of A and B minus that of B and C. Its mean is twice the covariance of B and C; this
+    /// covariance is the variance that the group causes alone.
     OfSamples<axis::PanelQuantity, axis::ErrorGroup> first;
     /// Squared difference of A and B. In `over_poses_`, a pose at which A, B or C does not count adds 0.
     OfSamples<axis::PanelQuantity, axis::ErrorGroup> between;

@@ -129,7 +129,8 @@ struct SobolResult {
   Shares<axis::Response, axis::ErrorGroup> Sh;  ///< Shapley effects over all poses, which add up to 1
   std::vector<SolveCounts> solves;              ///< [poses] how the solves at each pose ended
   std::vector<Failure> failures;                ///< first failed samples, ordered by pose and sample
-  std::uint64_t failed_samples = 0;             ///< number of failed samples A; 0 if `poesy replay` cannot repeat them
+  /// Number of failed samples among the draws A (IndexPanel); 0 if `poesy replay` cannot repeat them.
+  std::uint64_t failed_samples = 0;
   /// Indices after each round of adaptive samples; set if the study has adaptive samples.
   std::optional<ConvergenceResult> convergence = std::nullopt;
 
