@@ -100,11 +100,11 @@ inline constexpr std::string_view kTooSmall = "rounding";
 /// mm and deg.
 std::string readable_setting(std::string_view value);
 
-/// Whether all samples of the result were solved to first order in the errors. Their responses are linear in the errors
-/// then, or norms of linear ones, so they do not show whether those of the mechanism are.
+/// Whether all samples of the result were solved to first order in the errors. Such responses are linear in the errors,
+/// or norms of linear functions, so they do not show whether the responses of the mechanism are linear.
 bool is_first_order(const StoredResult& result);
 
-/// What tables and texts say of such a result.
+/// What tables and texts say of a result whose samples were all solved to first order.
 inline constexpr std::string_view kFirstOrder = "solved to first order in the errors";
 
 /// The full names and readable values of all settings of a resolved study, except those of no section, as its title.

@@ -16,19 +16,19 @@ namespace poesy {
 /// "analysis.limits.gap". merit: name of the figure of merit.
 std::string_view required_by(std::string_view setting, std::string_view merit);
 
-/// The value of a setting as far as it is a requirement: that of a trajectory without its number of points.
+/// The part of a setting's value that is a requirement: for a trajectory, the value without its number of points.
 std::string required_value(const std::string& setting, const std::string& value);
 
 /// Where the poses of results come from: from the settings of the study, or from a table (`--poses`).
 enum class PosesFrom { study, table };
 
 /// The requirements of two results that differ and on which this figure of merit depends, without their metrics
-/// (differ_in_metric()). Settings of poses count only if the poses differ; if they do not say why poses
-/// from tables differ, it is because of the tables ("--poses").
+/// (differ_in_metric()). Settings of poses count only if the poses differ; if no setting explains why poses from tables
+/// differ, the requirement that differs is the table ("--poses").
 std::vector<OtherRequirement> other_requirements(const StoredResult& a, const StoredResult& b, std::string_view merit,
                                                  PosesFrom poses = PosesFrom::study);
 
-/// What differs, each once: "limits and poses".
+/// The topics of these requirements, each once: "limits and poses".
 std::string topics_text(const std::vector<OtherRequirement>& others);
 
 /// What differs, with the values in A and in the result of this letter: "the limits differ (analysis.limits.gap: 0.15

@@ -90,8 +90,8 @@ std::optional<Table> stated_table(const StoredResult& result);
 /// the yield that the study asks for. Precondition: some errors are drawn from measured parts.
 std::string few_parts_text(const StoredResult& result, double conf_level, double asked);
 
-/// What of the draws is judged, after PASS or FAIL: " by root mean square". Empty for an evaluation, which judges each
-/// row. Precondition: limits are not judged by the yield.
+/// The statistic of the draws that is judged (Judge), as text behind PASS or FAIL: " by root mean square". Empty for an
+/// evaluation, which judges each row. Precondition: limits are not judged by the yield.
 std::string judged_text(const LimitVerdicts& verdicts);
 
 /// A clause on the draws that are not within the limit: "; 9.4 % of the samples are not within it". Empty for an

@@ -71,8 +71,8 @@ class Tracker {
   /// the limb's joints that move.
   std::vector<std::vector<std::size_t>> limb_joints_;
   std::vector<std::size_t> limb_ranks_;  ///< [limbs] rank of the columns of the joints in limb_joints_ at home
-  std::size_t idle_ =
-      0;  ///< number of idle freedoms: total number of joints in limb_joints_ minus the sum of limb_ranks_
+  /// Number of idle freedoms: total number of joints in limb_joints_ minus the sum of limb_ranks_.
+  std::size_t idle_ = 0;
 };
 
 }  // namespace poesy::file

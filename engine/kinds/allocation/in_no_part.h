@@ -18,8 +18,8 @@ struct UnallocatedError {
   double sigma;              ///< standard deviation, SI
 };
 
-std::vector<UnallocatedError> errors_in_no_part(const Study& study);          ///< Those of a study.
-std::vector<UnallocatedError> errors_in_no_part(const StoredResult& result);  ///< Those of a result.
+std::vector<UnallocatedError> errors_in_no_part(const Study& study);          ///< The errors in no part of a study.
+std::vector<UnallocatedError> errors_in_no_part(const StoredResult& result);  ///< The errors in no part of a result.
 
 /// A clause with the names and sizes of these errors: "9 of 39 varied errors are in no part; their sizes stay as
 /// [errors] states them: ball_left_x_1, ball_left_x_2, ball_left_x_3 and 6 more (normal, sigma 0.02 mm)". Empty if
