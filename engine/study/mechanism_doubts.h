@@ -26,8 +26,8 @@ std::vector<std::string> mechanism_doubts(const MechanismChoice& mechanism, cons
 std::vector<std::string> workspace_doubts(const Study& study, const PoseSet& poses);
 
 /// A warning if the study corrects the drives at each pose (`calibrated = true`), which is best for the points of
-/// Model::metric_points(), but limits the displacement of another point that these points are not around: their root
-/// mean square distance from it is more than a twentieth of the largest distance of a joint from it. Empty if there is
+/// Model::metric_points(), but limits the displacement of a point far from them. Far means that their root mean square
+/// distance from this point is more than a twentieth of the largest distance of a joint from it. Empty if there is
 /// nothing to warn of, if the mechanism is not from a file, so that its points cannot be changed, or if its platform
 /// has six freedoms, because the correction then leaves nothing at any point to first order. model: the mechanism of
 /// the study.
