@@ -29,8 +29,8 @@ class NormalEquations {
 
   /// Makes J^T W J regular from now on, although idle freedoms (ParallelChain::idle) make it singular. Each idle
   /// freedom is a combination of these columns [passive joints] that does not move the platform; for each, r^T r is
-  /// added to the matrix, where the row r is the unit direction of this combination times the root of the mean diagonal
-  /// entry of J^T W J.
+  /// added to the matrix, where the row r is the unit direction of this combination times the root mean square of the
+  /// norms |c|_W of the columns c.
   void hold_idle(std::span<const lie::Screw<double>> columns, const lie::Matrix6<double>* W);
   /// [idle freedoms x passive joints] The rows r of the idle freedoms. The sum of r^T r is added to J^T W J; see
   /// hold_idle().
