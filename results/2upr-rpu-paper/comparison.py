@@ -191,8 +191,8 @@ def table10(converged, other):
                       difference(each[factor], tolerance) if known else ""]
         lines.append([factor, UNITS[kind(factor)], f"{tolerance:g}", *cells])
     return ["## Table 10: tolerances of equal effect", "",
-            "A tolerance is mu_ref / mu_p times 1 degree, the tolerance of the reference error epsilon_1_1_z. Limb 2 gets the "
-            "tolerances of limb 1.", "",
+            "The tolerance of error p, in mm or deg, is mu_ref / mu_p: mu_p is the index of error p, and mu_ref that of the "
+            "reference error epsilon_1_1_z, whose tolerance is 1 degree. Limb 2 gets the tolerances of limb 1.", "",
             *markdown(["error", "unit", "published", "converged", "difference", "published procedure", "difference"],
                       lines)]
 
