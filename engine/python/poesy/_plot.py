@@ -26,6 +26,7 @@ _RANKED = {
     "S1": "S1, share of the variance of {response}",
     "cost": "cost",
     "mean_square_share": "share of the scatter of {response}",
+    "part_share": "share of the mean square under the tightest limit",
     "deformation": "deformation by the error alone, relative to the largest",
 }
 
@@ -61,7 +62,7 @@ class Plots:
         ranked = self._result.ranking(response)[:top]
         if not ranked.rows:
             raise NotInResult(f"{self._result.path}: {ranked.title}")
-        words = _RANKED[ranked.value]
+        words = _RANKED["part_share" if ranked.what == "part" and ranked.value != "cost" else ranked.value]
         values = np.array([getattr(row, ranked.value) for row in ranked])
         at = np.arange(len(values))
         axes = _axes(ax, 1.4 + 0.27 * len(values))
