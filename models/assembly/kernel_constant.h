@@ -1,6 +1,6 @@
 #pragma once
 
-// Part of kernels.cpp alone, which is compiled once for each instruction set.
+// This header belongs to kernels.cpp alone, which is compiled once for each instruction set.
 
 #include "models/assembly/kernel_state.h"
 

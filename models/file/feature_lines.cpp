@@ -41,8 +41,8 @@ void check_signs(std::string_view key, const StudyValue& value) {
 constexpr std::string_view kDigits = "0123456789";
 constexpr std::string_view kPlusAndMinus = "+-";
 
-/// Returns true if the text has a number with a sign directly before it, at or behind a place after the first
-/// character. The sign of an exponent, as in "1e-5", does not count.
+/// Returns true if the text has a number with a sign directly before it, at or behind the place `from`. The sign of an
+/// exponent, as in "1e-5", does not count. Precondition: from > 0.
 bool has_signed_number(std::string_view text, std::size_t from) {
   for (std::size_t at = from; at + 1 < text.size(); ++at) {
     const bool is_exponent = text[at - 1] == 'e' || text[at - 1] == 'E';

@@ -125,7 +125,7 @@ class Resume(ResumptionTest):
                 longest = study.replace("5300", "7600")
                 expected = self.undisturbed(longest)
                 self.write("study.toml", study)
-                self.stop_early("--threads", 1)  # of six units or more, one thread leaves most
+                self.stop_early("--threads", 1)  # one thread solves few of the study's units before it stops
                 for samples in ("6500", "7600"):
                     self.write("study.toml", study.replace("5300", samples))
                     self.stop_early("--resume", "--threads", 1)
