@@ -329,6 +329,7 @@ std::string_view name(ZoneShape shape) { return shape == ZoneShape::usual ? "usu
 
 std::vector<FeatureLines> read_features(const StudyValue& value) {
   std::vector<FeatureLines> list;
+  std::unordered_set<std::string> names;
   for (const StudyValue& element : value.list()) {
     FeatureLines feature;
     feature.key = element.full_name();
@@ -336,7 +337,7 @@ std::vector<FeatureLines> read_features(const StudyValue& value) {
     const StudySection section = element.section();
     read_keys(feature_keys(), section, feature, Nothing{});
     const StudyValue name = section.require("name");
-    check_new({feature.name, name.full_name(), name.place()}, list, "feature of this limb");
+    add_name({feature.name, name.full_name(), name.place()}, names, "feature of this limb");
     check_shape(feature);
     check_zones(feature);
     list.push_back(std::move(feature));

@@ -1,5 +1,6 @@
 #include "models/file/file_rows.h"
 
+#include <algorithm>
 #include <cctype>
 #include <tuple>
 
@@ -73,6 +74,14 @@ void check_name(const Reference& reference) {
   }
   throw InputError(reference.place, reference.key + " '" + printable(reference.name) + "' is not a name",
                    "write letters, digits, _ and -, and do not begin with -");
+}
+
+void add_name(const Reference& reference, std::unordered_set<std::string>& taken, std::string_view whose) {
+  check_name(reference);
+  if (taken.insert(reference.name).second) return;
+  throw InputError(reference.place,
+                   reference.key + " '" + reference.name + "' is the name of another " + std::string(whose),
+                   "give it a name of its own");
 }
 
 std::string read_name(const StudyValue& value) {

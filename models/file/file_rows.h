@@ -1,8 +1,8 @@
 #pragma once
 
-#include <algorithm>
 #include <string>
 #include <string_view>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -68,16 +68,8 @@ std::vector<Reference> references(const StudyValue& value);  ///< Reads a name, 
 /// Throws if a name is too long or contains a character that names must not have.
 void check_name(const Reference& reference);
 
-/// Throws if check_name() does, or if an element of `taken` already has the name.
-template <class Named>
-void check_new(const Reference& reference, const std::vector<Named>& taken, std::string_view whose) {
-  check_name(reference);
-  const auto same = [&](const Named& other) { return other.name == reference.name; };
-  if (std::ranges::none_of(taken, same)) return;
-  throw InputError(reference.place,
-                   reference.key + " '" + reference.name + "' is the name of another " + std::string(whose),
-                   "give it a name of its own");
-}
+/// Adds the name to `taken`. Throws if check_name() does, or if `taken` already has the name.
+void add_name(const Reference& reference, std::unordered_set<std::string>& taken, std::string_view whose);
 
 std::string read_name(const StudyValue& value);  ///< Reads a text that passes check_name().
 

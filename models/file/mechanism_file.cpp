@@ -130,14 +130,15 @@ const Keys<JointLines, Nothing>& joint_keys() {
 
 std::vector<JointLines> joints(const StudyValue& value) {
   std::vector<JointLines> list;
+  std::unordered_set<std::string> names;
   for (const StudyValue& element : value.list()) {
     JointLines joint;
     joint.key = element.full_name();
     joint.place = element.place();
     const StudySection section = element.section();
     read_keys(joint_keys(), section, joint, Nothing{});
-    check_new({joint.name, section.require("name").full_name(), section.require("name").place()}, list,
-              "joint of this limb");
+    const StudyValue name = section.require("name");
+    add_name({joint.name, name.full_name(), name.place()}, names, "joint of this limb");
     list.push_back(std::move(joint));
   }
   if (list.empty()) value.fail("is empty", "write its joints from base to platform");
@@ -216,20 +217,28 @@ void check_extent(const Extent& extent, const StudyValue& limb) {
   check("frames", extent.frames, kMostFrames);
 }
 
+/// Fails if a point of the limb has the name of one of its joints.
+void check_names_of_points(const LimbLines& limb) {
+  std::unordered_set<std::string> names;
+  for (const JointLines& joint : limb.joints) names.insert(joint.name);
+  for (const NamedPoint& named : limb.points) {
+    add_name({named.name, named.point.key, named.point.place}, names, "joint of this limb");
+  }
+}
+
 std::vector<LimbLines> limbs(const StudyValue& value) {
   std::vector<LimbLines> list;
+  std::unordered_set<std::string> names;
   Extent extent;
   for (const StudyValue& element : tables(value)) {
     LimbLines limb;
     limb.key = element.full_name();
     limb.place = element.place();
     read_keys(limb_keys(), element.section(), limb, Nothing{});
-    for (const NamedPoint& named : limb.points) {
-      check_new({named.name, named.point.key, named.point.place}, limb.joints, "joint of this limb");
-    }
+    check_names_of_points(limb);
     if (!limb.name.empty()) {
       const StudyValue name = element.section().require("name");
-      check_new({limb.name, name.full_name(), name.place()}, list, "limb");
+      add_name({limb.name, name.full_name(), name.place()}, names, "limb");
     }
     extent.add(limb);
     check_extent(extent, element);
@@ -243,6 +252,7 @@ std::vector<LimbLines> limbs(const StudyValue& value) {
 
 void read_coordinates(const StudyValue& value, PlatformLines& platform) {
   platform.coordinates_place = value.place();
+  std::unordered_set<std::string> names;
   for (const StudyValue& element : value.list()) {
     CoordinateLines line;
     line.key = element.full_name();
@@ -256,7 +266,7 @@ void read_coordinates(const StudyValue& value, PlatformLines& platform) {
     } else {
       line.name = line.component = kCoordinates[element.word(kCoordinates)];
     }
-    check_new({line.name, line.key, line.place}, platform.coordinates, "coordinate");
+    add_name({line.name, line.key, line.place}, names, "coordinate");
     if (std::ranges::find(platform.coordinates, line.component, &CoordinateLines::component) !=
         platform.coordinates.end()) {
       element.fail("is " + line.component + " a second time", "remove it");

@@ -105,6 +105,7 @@ const Keys<LoadLines, Nothing>& load_keys() {
 
 std::vector<BodyLines> read_bodies(const StudyValue& value) {
   std::vector<BodyLines> list;
+  std::unordered_set<std::string> names;
   for (const StudyValue& element : tables(value)) {
     BodyLines body;
     body.key = element.full_name();
@@ -112,7 +113,7 @@ std::vector<BodyLines> read_bodies(const StudyValue& value) {
     const StudySection section = element.section();
     read_keys(body_keys(), section, body, Nothing{});
     const StudyValue name = section.require("name");
-    check_new({body.name, name.full_name(), name.place()}, list, "body");
+    add_name({body.name, name.full_name(), name.place()}, names, "body");
     if (body.x.has_value() != body.z.has_value()) element.fail("has one of x and z", "give both, or neither");
     list.push_back(std::move(body));
   }

@@ -12,7 +12,7 @@ WAIT = 10  # times as long by the clock: a command that has not ended by then wa
 
 def run_in_time(folder, command):
     """How the command ended. Throws AssertionError where it does not end in time."""
-    limited = ["prlimit", f"--cpu={LONGEST}", PROGRAM, *command]
+    limited = ["prlimit", f"--cpu={LONGEST}:{LONGEST + 2}", PROGRAM, *command]
     try:
         done = subprocess.run(limited, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, timeout=WAIT * LONGEST,
                               check=False)
