@@ -165,12 +165,13 @@ void compare_two(const ReportKind& kind, std::span<const ReportedResult> results
 }
 
 /// The comparison of results: figures of merit, settings that differ, and, for two results, errors or other items.
+/// wanted: the response that the user named for all results; may be empty.
 ComparedResults compare(const ReportKind& kind, std::span<const ReportedResult> results,
-                        std::span<const RankedResult> ranked, RowOrder order) {
+                        std::span<const RankedResult> ranked, RowOrder order, const std::string& wanted) {
   ComparedResults compared;
   std::vector<const StoredResult*> stored;
   for (const ReportedResult& one : results) stored.push_back(&one.stored);
-  if (std::optional<Table> table = merits_table(compared_merits(kind, stored)))
+  if (std::optional<Table> table = merits_table(compared_merits(kind, stored, wanted)))
     compared.tables.push_back(std::move(*table));
   for (std::size_t n = 1; n < results.size(); ++n) {
     Table settings = settings_table(*stored[0], *stored[n], n, false);
@@ -199,7 +200,8 @@ int show_several(const ShowOptions& options) {
     const StoredResult& stored = results[n].stored;
     ranked.push_back({stored, results[n].path, responses[n], kind.tally(stored).total()});
   }
-  ComparedResults compared = compare(kind, results, ranked, order);
+  const bool names_one = options.response.find(',') == std::string::npos;
+  ComparedResults compared = compare(kind, results, ranked, order, names_one ? options.response : std::string());
   if (options.top) keep_first(*options.top, compared.tables);
   if (options.json) {
     print(json_of(ranked, compared));

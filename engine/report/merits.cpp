@@ -160,14 +160,16 @@ char letter_of(std::size_t result) {
   return static_cast<char>('A' + result);
 }
 
-std::string compared_response(std::span<const StoredResult* const> results) {
+std::string compared_response(std::span<const StoredResult* const> results, const std::string& wanted) {
   const auto in_all = [&](const std::string& name) {
     return std::ranges::all_of(results, [&](const StoredResult* result) {
       return std::ranges::find(result->responses, name, &NamedUnit::name) != result->responses.end();
     });
   };
   const StoredResult& first = *results.front();
-  if (const std::string name = default_ranking(first); in_all(name)) return name;
+  for (const std::string& name : {wanted, default_ranking(first)}) {
+    if (in_all(name)) return name;
+  }
   const auto at = std::ranges::find_if(first.responses, in_all, &NamedUnit::name);
   return at == first.responses.end() ? std::string() : at->name;
 }
@@ -184,11 +186,12 @@ Merit yield_merit(const YieldVerdict& yield) {
           .narrows = !yield.with_parts.has_value()};
 }
 
-std::vector<std::vector<Merit>> compared_merits(const ReportKind& kind, std::span<const StoredResult* const> results) {
+std::vector<std::vector<Merit>> compared_merits(const ReportKind& kind, std::span<const StoredResult* const> results,
+                                                const std::string& wanted) {
   const auto differs = [&](const StoredResult* result) { return differ_in_metric(*results.front(), *result); };
   if (kind.merits == nullptr || std::ranges::any_of(results, differs))
     return std::vector<std::vector<Merit>>(results.size());
-  const std::string response = compared_response(results);
+  const std::string response = compared_response(results, wanted);
   std::vector<std::vector<Merit>> found;
   for (const StoredResult* result : results) {
     found.push_back(kind.merits(*result, response));

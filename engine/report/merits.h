@@ -53,19 +53,20 @@ inline constexpr std::size_t kMostResults = 26;
 /// The letter for one of several results: 'A', 'B', ... Precondition: result < kMostResults.
 char letter_of(std::size_t result);
 
-/// The response for which results are compared by totals. It is default_ranking() of the first result if all results
-/// have this response, and otherwise the first response that all results have. Empty if they have no response in
-/// common.
-std::string compared_response(std::span<const StoredResult* const> results);
+/// The response for which results are compared by totals: the wanted one, otherwise default_ranking() of the first
+/// result, otherwise the first response, in each case only if all results have this response. Empty if they have no
+/// response in common. wanted: name of a response; may be empty.
+std::string compared_response(std::span<const StoredResult* const> results, const std::string& wanted = {});
 
 /// The yield of machines as a figure of merit. If errors are drawn from measured parts, the interval also includes the
 /// uncertainty from the small number of measured parts.
 Merit yield_merit(const YieldVerdict& yield);
 
-/// The figures of merit of each of these results; totals are those of compared_response(). The lists are empty if the
-/// kind of study has no figures of merit, or if the results have different metrics, because with different metrics
-/// equal names mean different things.
-std::vector<std::vector<Merit>> compared_merits(const ReportKind& kind, std::span<const StoredResult* const> results);
+/// The figures of merit of each of these results; totals are those of compared_response(). wanted: as there. The lists
+/// are empty if the kind of study has no figures of merit, or if the results have different metrics, because with
+/// different metrics equal names mean different things.
+std::vector<std::vector<Merit>> compared_merits(const ReportKind& kind, std::span<const StoredResult* const> results,
+                                                const std::string& wanted = {});
 
 /// The verdict on a change of a figure of merit from one result to another.
 enum class Change { better, worse, not_told_apart, without_interval, other_requirements };

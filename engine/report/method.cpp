@@ -128,6 +128,22 @@ std::string background_sentence(const StoredResult& result, const StudyWords& wo
   return fmt::format("Background, the same in all machines: {}.", fmt::join(parts, ", "));
 }
 
+/// A clause on what machines have of their own: ", each with one set of errors at all poses, except 4 errors that are
+/// drawn anew at each pose (play_x_1, ...)".
+std::string draws_of_machines(const StoredResult& result) {
+  std::vector<std::string> anew;
+  std::size_t drawn = 0;
+  for (std::size_t p = 0; p < result.factor_draws.size(); ++p) {
+    if (p < result.factor_sigma.size() && !(result.factor_sigma[p] > 0.0)) continue;
+    ++drawn;
+    if (result.factor_draws[p] == "per pose") anew.push_back(result.factors[p].name);
+  }
+  if (anew.empty()) return ", each with one set of errors at all poses";
+  if (anew.size() == drawn) return ", each with new errors at every pose";
+  return fmt::format(", each with one set of errors at all poses, except {} drawn anew at each pose ({})",
+                     counted(anew.size(), "error that is", "errors that are"), some_names(anew, kMostNamed));
+}
+
 std::string poses_sentence(const StoredResult& result, const StudyWords& words) {
   const std::string choice = words.own_poses ? setting(result, "poses", "select") : std::string();
   std::string text = (words.fitted ? "What the calibration leaves was predicted at " : "The mechanism was solved at ") +
@@ -138,7 +154,7 @@ std::string poses_sentence(const StoredResult& result, const StudyWords& words) 
   if (words.draws && !words.samples.empty()) {
     text += ", for " + words.samples;
   } else if (words.draws && !samples.empty()) {
-    text += machines ? fmt::format(", for {} machines, each with one set of errors at all poses", samples)
+    text += machines ? fmt::format(", for {} machines{}", samples, draws_of_machines(result))
                      : fmt::format(", with {} samples at each", samples);
   }
   return text + ".";

@@ -170,6 +170,18 @@ class FeatureBuilder {
     return {joint + 1, is_last ? mechanism_.bodies[limb.to].home : limb.joints[joint].at_home, !is_last};
   }
 
+  /// Returns true if the direction of a distance leads from its joint into the part, to the part's other joint. Then an
+  /// error along this direction makes the part shorter. The point of a sliding joint says nothing on its part.
+  static bool leads_into_part(const FeatureLines& lines, const FeatureFrame& at, const Limb& limb, std::size_t joint) {
+    constexpr double kMostlyAlong = 0.5;  // cosine of the angle between both
+    const bool is_after = lines.part == PartSide::after;
+    if (!lines.direction || (is_after ? joint + 1 == limb.joints.size() : joint == 0)) return false;
+    const Joint& other = limb.joints[is_after ? joint + 1 : joint - 1];
+    if (limb.joints[joint].motion == Motion::prismatic || other.motion == Motion::prismatic) return false;
+    const Vector3 across = other.at_home.p - at.middle;
+    return at.axes.col(0).dot(across) > kMostlyAlong * across.norm();
+  }
+
   Vector3 middle_of(const FeatureLines& lines, const Limb& first, std::size_t joint) const {
     if (lines.at) return numbers_.point(*lines.at);
     if (!lines.at_point) return first.joints[joint].at_home.p;
@@ -289,11 +301,13 @@ class FeatureBuilder {
     feature.name = lines.name + "_" + number;
     feature.limb = first + copy + 1;
     feature.frame = part.frame;
+    const bool is_shorter = leads_into_part(lines, at, limb, joint);
     for (const FeatureError& error : errors_of(lines, feature)) {
+      const std::string text = is_shorter ? "is off along its direction, which makes its part shorter"
+                                          : error.text + axis_text(error, at.axes);
       (error.is_tilt ? feature.tilt : feature.middle).emplace_back(mechanism_.factors.size());
       Factor factor{feature_error_name(lines.name, name(error.direction), feature.limb), Dimension::length,
-                    feature.limb, part.frame,
-                    fmt::format("{} of limb {} {}{}", lines.name, limb.label, error.text, axis_text(error, at.axes))};
+                    feature.limb, part.frame, fmt::format("{} of limb {} {}", lines.name, limb.label, text)};
       add_error(std::move(factor), terms(error, at, part, first + copy), {lines.name, lines.key, lines.place},
                 mechanism_);
     }

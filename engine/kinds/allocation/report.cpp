@@ -221,8 +221,8 @@ Answer answer(const StoredResult& result) {
       "What to do", found.certified() ? fmt::format("Put the tolerances of the table below on the drawing. {}The study "
                                                     "of the certificate repeats the proof.",
                                                     keep_text(result))
-                                      : "Do not use these tolerances as they are: study again with another seed or a "
-                                        "lower yield.");
+                                      : "Do not use these tolerances as they are: study again with more samples or a "
+                                        "lower yield. Another seed until the certificate is reached proves nothing.");
   return lines;
 }
 
@@ -260,11 +260,12 @@ StudyWords words(const StoredResult& result) {
 }
 
 MethodWords method(const StoredResult& result) {
+  const Result& found = allocation_of(result);
   const std::string others = in_no_part_text(errors_in_no_part(result), result.factors.size());
   return {fmt::format(
       "{} under the wanted yield were found by linearised mean squares and by the yield of drawn machines, and were "
-      "certified with fresh machines, which the search had not seen.{}",
-      has_costs(allocation_of(result)) ? "Tolerances of least cost" : "The largest tolerances",
+      "judged with fresh machines, which the search had not seen. {}{}",
+      has_costs(found) ? "Tolerances of least cost" : "The largest tolerances", as_sentence(certificate_text(found)),
       others.empty() ? "" : " " + others + ".")};
 }
 

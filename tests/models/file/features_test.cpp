@@ -71,6 +71,27 @@ TEST(Features, SayWhichErrorsTheirZonesLimit) {
   EXPECT_EQ(mechanism.factors.size(), 78u);
 }
 
+TEST(Features, SayWhetherADistanceMakesItsPartLonger) {
+  const auto rod = [](const std::string& place, const std::string& direction) {
+    const std::string text =
+        replaced(text_of(kName), {R"(joint = "C", kind = "distance", direction = ["r - R", 0, "-h"])",
+                                  place + R"(, kind = "distance", direction = )" + direction});
+    const MechanismFile file = read_mechanism_file(text, "m.toml");
+    const Mechanism made = mechanism(file, default_geometry(file));
+    return made.factors[position(made.factors, "rod_1")].description;
+  };
+  const std::string towards_c = R"(["r - R", 0, "-h"])";
+  const std::string towards_b = R"(["R - r", 0, "h"])";
+  const std::string after_b = R"(joint = "B", axis = 2, part = "after")";
+  const std::string longer = "is too long";
+  const std::string shorter = "is off along its direction, which makes its part shorter";
+  EXPECT_NE(rod(R"(joint = "C")", towards_c).find(longer), std::string::npos);
+  EXPECT_NE(rod(R"(joint = "C")", towards_b).find(shorter), std::string::npos);
+  EXPECT_NE(rod(after_b, towards_c).find(shorter), std::string::npos);
+  EXPECT_NE(rod(after_b, towards_b).find(longer), std::string::npos);
+  EXPECT_NE(rod(R"(joint = "B")", R"("-z")").find(longer), std::string::npos);  // a carriage on a P joint
+}
+
 TEST(Features, HaveTolerancesByExpressions) {
   const auto tolerance = [](const std::string& written) {
     const std::string text = replaced(text_of(kName), {"geometry = { ", "geometry = { t1 = \"0.01 mm\", "});
