@@ -835,21 +835,38 @@ bool states_size(const StudySection& errors, const Factor& factor) {
                    "errors.linear");
 }
 
-void check_sizes_of_features(const Study& study, const Reading& reading, std::span<const FactorIndex> of_parts) {
-  const StudySection errors = reading.root.section("errors");
+/// A warning that the default is the size of these errors, which all have this dimension. Precondition: there is one.
+static std::string default_text(std::span<const FactorIndex> errors, Dimension dimension, const Study& study) {
+  const std::string& first = study.model().factors[errors.front().value].name;
+  const std::string which = errors.size() == 1   ? "of the error " + first
+                            : errors.size() == 2 ? fmt::format("of {} and one more error", first)
+                                                 : fmt::format("of {} and {} more errors", first, errors.size() - 1);
+  return fmt::format("[errors] does not state the size {}, so it is the default, {}; write errors.{}", which,
+                     error_text({default_distribution(dimension)}, dimension, readable_value), error_kind(dimension));
+}
+
+void check_error_sizes(Study& study, const Reading& reading, std::span<const FactorIndex> of_parts) {
   if (reading.use != StudyUse::run) return;
+  const StudySection errors = reading.root.section("errors");
   const std::vector<std::optional<Distribution>> by_zones = distributions_by_zones(study);
-  const auto has_no_size = [&](FactorIndex error) {
-    return std::ranges::find(study.analysis.factors, error) != study.analysis.factors.end() && !by_zones[error.value] &&
-           std::ranges::find(of_parts, error) == of_parts.end() && !is_given(study, error.value) &&
-           !states_size(errors, study.model().factors[error.value]);
-  };
+  std::vector<FactorIndex> without_size;
+  std::ranges::copy_if(study.analysis.factors, std::back_inserter(without_size), [&](FactorIndex error) {
+    return !by_zones[error.value] && std::ranges::find(of_parts, error) == of_parts.end() &&
+           !is_given(study, error.value) && !states_size(errors, study.model().factors[error.value]);
+  });
   for (const Feature& feature : study.model().features) {
+    if (feature.clearance) continue;
     const std::vector<FactorIndex> list = feature.errors();
-    const auto error = std::ranges::find_if(list, has_no_size);
-    if (feature.clearance || error == list.end()) continue;
+    const auto error = std::ranges::find_first_of(list, without_size);
+    if (error == list.end()) continue;
     refuse_missing_size(errors.place(), study.model().factors[error->value].name, feature.name,
                         study.errors.zones.has_value());
+  }
+  for (const Dimension dimension : {Dimension::length, Dimension::angle, Dimension::number}) {
+    std::vector<FactorIndex> alike;
+    std::ranges::copy_if(without_size, std::back_inserter(alike),
+                         [&](FactorIndex error) { return study.model().factors[error.value].dimension == dimension; });
+    if (!alike.empty()) study.doubts.push_back(default_text(alike, dimension, study));
   }
 }
 

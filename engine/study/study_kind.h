@@ -208,8 +208,9 @@ void check_zones(const Study& study, const Reading& reading);
 /// Returns true if [errors] states the size of an error, by its dimension or by a key of [errors.override].
 bool states_size(const StudySection& errors, const Factor& factor);
 /// Throws InputError if an error of a feature varies but neither errors.zones nor another key states its size. For such
-/// an error the default size of lengths makes no sense. of_parts: errors whose sizes the kind of study finds itself.
-void check_sizes_of_features(const Study& study, const Reading& reading, std::span<const FactorIndex> of_parts = {});
+/// an error the default size of lengths makes no sense. For other errors without a stated size, adds a warning that
+/// names the default to study.doubts. of_parts: errors whose sizes the kind of study finds itself.
+void check_error_sizes(Study& study, const Reading& reading, std::span<const FactorIndex> of_parts = {});
 /// Throws InputError at the block's place if correlated errors do not vary together.
 void check_correlated(const Study& study, const Reading& reading);
 /// Throws InputError at errors.machines if machines are given to a study that does not take them, if a column is an

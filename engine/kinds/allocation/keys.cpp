@@ -302,7 +302,7 @@ void complete_allocation(Study& study, const Reading& reading) {
   if (reading.use == StudyUse::run) {
     require_all(study, section);
     check_simulated_machines(study, section);
-    check_sizes_of_features(study, reading, errors_of_parts(asked.parts));
+    check_error_sizes(study, reading, errors_of_parts(asked.parts));
   }
   const bool costs = std::ranges::any_of(asked.parts, has_cost);
   const auto aim = section.find("aim");

@@ -169,7 +169,7 @@ void check_calibration(const Study& study, const StudySection& section) {
 void complete(Study& study, const Reading& reading) {
   const StudySection section = reading.root.section("analysis");
   if (reading.use == StudyUse::run) check_calibration(study, section);
-  check_sizes_of_features(study, reading);
+  check_error_sizes(study, reading);
   const auto judge = section.find("judge");
   MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
   if (!judge) asked.judge = usual_judge(study.analysis);

@@ -91,7 +91,7 @@ std::vector<StudyRow> sensitivity_rows() {
 
 void complete_sensitivity(Study& study, const Reading& reading) {
   if (reading.use != StudyUse::run) return;
-  check_sizes_of_features(study, reading);
+  check_error_sizes(study, reading);
   const StudySection section = reading.root.section("analysis");
   check_simulated_machines(study, section);
   if (!study.mechanism.compared) return section.refuse("linearity", "a study without fidelity = \"both\"");

@@ -254,7 +254,7 @@ void check_sobol(Study& study, const Reading& reading) {
                                      "write a number, e.g. samples = 4096");
   }
   check_draws(study, analysis);
-  check_sizes_of_features(study, reading);
+  check_error_sizes(study, reading);
   check_replicates(study, analysis);
   if (asked_of<SobolOptions>(study.analysis).groups_by == GroupsBy::name) {
     check_named_groups(study, analysis.section("groups"));
