@@ -8,11 +8,13 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "engine/base/units.h"
 #include "engine/model/sketch.h"
 #include "engine/study/calibration.h"
 #include "engine/study/poses/unusual_workspace.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {
@@ -116,6 +118,27 @@ std::vector<std::string> workspace_doubts(const Study& study, const PoseSet& pos
   const CalibrationTable& calibration = *study.analysis.calibration;
   if (calibration.poses) add("analysis.calibration.poses", *calibration.poses, {});
   if (calibration.candidates) add("analysis.calibration.candidates", *calibration.candidates, {});
+  return list;
+}
+
+std::vector<std::string> size_doubts(const Study& study, const Model& model) {
+  const StudyKind& kind = *study.analysis.kind;
+  if (kind.varies == Varies::none || kind.draws_machines_anew) return {};
+  std::vector<std::string> list;
+  for (const auto& [dimension, share] : {std::pair(Dimension::length, 1.0 / 10.0), {Dimension::angle, 1.0 / 18.0}}) {
+    for (const FactorIndex error : study.analysis.factors) {
+      const Factor& factor = study.model().factors[error.value];
+      const Distribution& distribution = study.errors.by_factor[error.value];
+      if (factor.dimension != dimension || distribution.shape() == Distribution::Shape::given) continue;
+      const ErrorBound bound = model.error_bound(error);
+      const double sigma = distribution.standard_deviation();
+      if (sigma <= share * bound.size) continue;
+      list.push_back(asked_back(fmt::format("the error {} has a standard deviation of {}, {} is {}", factor.name,
+                                            readable_text({sigma, dimension}), bound.part,
+                                            readable_text({bound.size, dimension}))));
+      break;
+    }
+  }
   return list;
 }
 

@@ -25,6 +25,11 @@ std::vector<std::string> mechanism_doubts(const MechanismChoice& mechanism, cons
 /// wrong (unusual_workspace()). poses: the poses that [poses] selects.
 std::vector<std::string> workspace_doubts(const Study& study, const PoseSet& poses);
 
+/// Questions about the sizes of drawn errors, one for lengths and one for angles: the first standard deviation of more
+/// than a tenth of Model::error_bound(), for angles of more than 10 deg. An allocation finds sizes itself, so it raises
+/// none. model: the mechanism of the study.
+std::vector<std::string> size_doubts(const Study& study, const Model& model);
+
 /// A warning if the study corrects the drives at each pose (`calibrated = true`), which is best for the points of
 /// Model::metric_points(), but limits the displacement of a point far from them. Far means that their root mean square
 /// distance from this point is more than a twentieth of the largest distance of a joint from it. Empty if there is
