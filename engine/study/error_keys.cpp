@@ -862,6 +862,7 @@ void check_error_sizes(Study& study, const Reading& reading, std::span<const Fac
     refuse_missing_size(errors.place(), study.model().factors[error->value].name, feature.name,
                         study.errors.zones.has_value());
   }
+  if (!study.mechanism.file) return;  // the built-in mechanisms have the sizes of their paper
   for (const Dimension dimension : {Dimension::length, Dimension::angle, Dimension::number}) {
     std::vector<FactorIndex> alike;
     std::ranges::copy_if(without_size, std::back_inserter(alike),

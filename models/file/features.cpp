@@ -170,15 +170,25 @@ class FeatureBuilder {
     return {joint + 1, is_last ? mechanism_.bodies[limb.to].home : limb.joints[joint].at_home, !is_last};
   }
 
-  /// Returns true if the direction of a distance leads from its joint into the part, to the part's other joint. Then an
-  /// error along this direction makes the part shorter. The point of a sliding joint says nothing on its part.
-  static bool leads_into_part(const FeatureLines& lines, const FeatureFrame& at, const Limb& limb, std::size_t joint) {
+  /// The other end of a part at this joint, at home: the point of the neighbouring joint, or the origin of the body
+  /// after the last joint. None for a part of the base, and beside a sliding joint, whose point says nothing on its
+  /// part.
+  std::optional<Vector3> other_end(PartSide side, const Limb& limb, std::size_t joint) const {
+    const auto slides = [&](std::size_t j) { return limb.joints[j].motion == Motion::prismatic; };
+    const bool is_after = side == PartSide::after;
+    if (slides(joint) || (!is_after && joint == 0)) return {};
+    if (is_after && joint + 1 == limb.joints.size()) return mechanism_.bodies[limb.to].home.p;
+    const std::size_t other = is_after ? joint + 1 : joint - 1;
+    return slides(other) ? std::nullopt : std::optional(limb.joints[other].at_home.p);
+  }
+
+  /// Returns true if the direction of a distance leads from its joint into the part, to the part's other end. Then an
+  /// error along this direction makes the part shorter.
+  bool leads_into_part(const FeatureLines& lines, const FeatureFrame& at, const Limb& limb, std::size_t joint) const {
     constexpr double kMostlyAlong = 0.5;  // cosine of the angle between both
-    const bool is_after = lines.part == PartSide::after;
-    if (!lines.direction || (is_after ? joint + 1 == limb.joints.size() : joint == 0)) return false;
-    const Joint& other = limb.joints[is_after ? joint + 1 : joint - 1];
-    if (limb.joints[joint].motion == Motion::prismatic || other.motion == Motion::prismatic) return false;
-    const Vector3 across = other.at_home.p - at.middle;
+    const auto end = lines.direction ? other_end(lines.part, limb, joint) : std::nullopt;
+    if (!end) return false;
+    const Vector3 across = *end - at.middle;
     return at.axes.col(0).dot(across) > kMostlyAlong * across.norm();
   }
 

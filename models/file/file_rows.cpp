@@ -39,7 +39,13 @@ Triple point(const StudyValue& value) {
 }
 
 Triple direction(const StudyValue& value) {
-  if (!value.is_text()) return point(value);
+  if (!value.is_text()) {
+    const std::vector<StudyValue> list = value.list();
+    if (list.size() == 2 && list[0].is_text() && list[1].is_text()) {
+      value.fail("has 2 values", "write one direction, e.g. \"x\"; the second axis of a U joint is its key axis2");
+    }
+    return point(value);
+  }
   std::string word = value.text();
   const bool back = word.starts_with('-');
   if (back) word.erase(0, 1);

@@ -71,6 +71,16 @@ void read_actuated(const StudyValue& value, JointLines& joint) {
   joint.actuated[static_cast<std::size_t>(value.whole_number(1, 2) - 1)] = true;
 }
 
+/// The key `axis2`.
+Row<JointLines> second_axis() {
+  Row<JointLines> row = needed("axis2", kept("direction", direction, &JointLines::axis2), "\"y\"",
+                               "Its second axis, in the order from the base, not parallel to `axis`. The axis on the "
+                               "leg's side lies across the leg; at the platform's end of a leg it is `axis`.",
+                               {"U"});
+  row.missing = "write its second axis, across the leg, e.g. {}";
+  return row;
+}
+
 const Keys<JointLines, Nothing>& joint_keys() {
   using J = JointLines;
   const std::vector<std::string_view> directed{"R", "P", "H", "C", "U", "fixed"};
@@ -101,11 +111,7 @@ const Keys<JointLines, Nothing>& joint_keys() {
                    directed),
           optional("axis", kept("direction", direction, &J::axis), "",
                    "Its direction, without `from` and `to`: \"x\", \"-z\", or [x, y, z] of any length.", directed),
-          needed("axis2", kept("direction", direction, &J::axis2), "\"z\"",
-                 "Its second axis, in the order from the base, not parallel to `axis`; on the platform's end of a leg "
-                 "the order "
-                 "is usually the other way round than on the base's.",
-                 {"U"}),
+          second_axis(),
           optional("x", kept("direction", direction, &J::x), "towards the next joint's point",
                    "The x axis of its first frame, made perpendicular to z."),
           needed("pitch", kept("length", expression, &J::pitch), "\"5 mm\"",

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <ranges>
+#include <utility>
 
 namespace poesy::file {
 namespace {
@@ -199,6 +202,39 @@ std::vector<std::string> home_outside(const Mechanism& mechanism) {
                                coordinate.name, text(value), text(coordinate.lower), text(coordinate.upper)));
   }
   return list;
+}
+
+/// The angle (rad, at most a quarter turn) between the axis of joint j of the limb and the line to the nearest of
+/// `others` whose point is not that of joint j. The joint's name is added; none if there is no such joint.
+static std::optional<std::pair<double, std::string>> angle_to_leg(const Joint& joint, auto&& others) {
+  constexpr double kOnePoint = 1e-9;  // m
+  for (const Joint& other : others) {
+    const Vector3 line = other.at_home.p - joint.at_home.p;
+    if (line.norm() <= kOnePoint) continue;
+    const Vector3 axis = joint.at_home.R.col(2);
+    return std::pair(std::atan2(axis.cross(line).norm(), std::abs(axis.dot(line))), other.name);
+  }
+  return {};
+}
+
+std::vector<std::string> axes_along_legs(const Mechanism& mechanism) {
+  constexpr double kAlong = 20.0;  // deg
+  for (const Limb& limb : mechanism.limbs) {
+    const std::span<const Joint> joints = limb.joints;
+    for (std::size_t j = 0; j + 1 < joints.size(); ++j) {
+      if (joints[j].kind != JointKind::universal || joints[j + 1].name != joints[j].name) continue;
+      const auto before = angle_to_leg(joints[j], joints.first(j) | std::views::reverse);
+      const auto after = angle_to_leg(joints[j + 1], joints.subspan(j + 2));
+      for (const auto& [key, found] : {std::pair("axis", before), {"axis2", after}}) {
+        if (!found || found->first * 180.0 / std::numbers::pi >= kAlong) continue;
+        return {
+            fmt::format("{} of joint {} of limb {} is at {:.3g} deg to the line to joint {}, so the leg can swing "
+                        "about the other axis only (the axis on the leg's side usually lies across the leg)",
+                        key, joints[j].name, limb.label, found->first * 180.0 / std::numbers::pi, found->second)};
+      }
+    }
+  }
+  return {};
 }
 
 std::string joints_text(const Mechanism& mechanism, const Drive& drive) {

@@ -33,6 +33,10 @@ Sketch sketch_of(const Mechanism& mechanism);
 /// Clauses about coordinates whose value at home is outside their workspace, one for each.
 std::vector<std::string> home_outside(const Mechanism& mechanism);
 
+/// A clause about a universal joint whose axis on the leg's side lies nearly along the line to the leg's next point, at
+/// home: such a joint lets the leg swing about one axis only. At most one, for copies of a limb share it.
+std::vector<std::string> axes_along_legs(const Mechanism& mechanism);
+
 /// Clauses about errors with limb = "each" for which the limbs are not alike, one for each error.
 std::vector<std::string> unlike_limbs(const Mechanism& mechanism);
 

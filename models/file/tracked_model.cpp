@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
@@ -91,7 +92,11 @@ std::vector<std::string> TrackedModel::mobility() const {
 
 std::vector<std::string> TrackedModel::remarks() const { return rounding_remarks(mechanism_, mismatch_); }
 
-std::vector<std::string> TrackedModel::unusual_geometry() const { return home_outside(mechanism_); }
+std::vector<std::string> TrackedModel::unusual_geometry() const {
+  std::vector<std::string> list = home_outside(mechanism_);
+  std::ranges::move(axes_along_legs(mechanism_), std::back_inserter(list));
+  return list;
+}
 
 std::vector<std::string> TrackedModel::unusual_errors() const {
   std::vector<std::string> list;

@@ -101,6 +101,27 @@ class StudyNotes(ProgramTest):
         self.assertEqual(self.errors_of("run", "study.toml", "-o", "r.h5", "--quiet"), "")
         self.assertNotIn("warning", self.succeeds("show", "r.h5"))
 
+    def test_errors_without_a_size(self):
+        without = RPS.replace('[errors]\nlinear = { distribution = "normal", sigma = "0.1 mm" }\n', "")
+        self.write_rps(without)
+        default = 'so it is the default, { distribution = "normal", sigma = "1 mm" }; write errors.linear\n'
+        self.assertEqual(self.errors_of("check", "study.toml"),
+                         f"poesy: warning: [errors] does not state the size of the error delta_1_1_x, {default}")
+        self.write_rps(RPS.replace('"delta_1_1_x"', '"delta_1_1_x", "delta_2_1_x", "delta_3_1_x", "epsilon_1_1_x"'))
+        self.assertEqual(self.errors_of("check", "study.toml"),
+                         "poesy: warning: [errors] does not state the size of the error epsilon_1_1_x, so it is the default, "
+                         '{ distribution = "normal", sigma = "1 deg" }; write errors.angular\n')
+        self.write("study.toml", STUDY)
+        self.assertEqual(self.errors_of("check", "study.toml"), "", "a built-in mechanism has the sizes of its paper")
+
+    def test_a_standard_deviation_as_large_as_a_link(self):
+        self.write_rps(RPS.replace("0.1 mm", "80 mm"))
+        said = self.errors_of("check", "study.toml")
+        self.assertRegex(said, r"^poesy: warning: the error delta_1_1_x has a standard deviation of 80 mm, .* is \d+.* mm; "
+                               r"is that meant\?\n$")
+        self.write_rps(RPS.replace("0.1 mm", "2 mm"))
+        self.assertEqual(self.errors_of("check", "study.toml"), "")
+
     def write_tricept(self, z):
         self.write("tricept.toml", (GALLERY / "tricept/tricept.toml").read_text())
         box = f'workspace = {{ rx = ["-20 deg", "20 deg"], ry = ["-20 deg", "20 deg"], z = {z} }}'

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -15,6 +16,7 @@
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/allocation/zone_blocks.h"
 #include "engine/kinds/allocation/zone_parts.h"
+#include "engine/report/display.h"
 #include "engine/stats/proportion.h"
 #include "engine/study/calibration_keys.h"
 #include "engine/study/limit_keys.h"
@@ -93,6 +95,43 @@ void doubt_unlike_limbs(const StudySection& block, Study& study) {
   study.doubts.push_back(std::move(doubt));
 }
 
+/// The distance in standard deviations from the mean to the end of the part's errors. None if the errors are normal or
+/// measured, if their distributions differ in shape, or if the part is a zone.
+std::optional<double> end_in_sigmas(const AllocatedPart& part, const Study& study) {
+  if (part.zone) return {};
+  const auto end = [&](FactorIndex error) {
+    const Distribution& errors = study.errors.by_factor[error.value];
+    if (errors.parts() || !errors.given_values().empty()) return std::numeric_limits<double>::infinity();
+    return errors.half_width() /
+           std::sqrt(errors.standard_deviation() * errors.standard_deviation() - errors.shift() * errors.shift());
+  };
+  const double first = end(part.factors.front());
+  constexpr double kRounding = 1e-9;
+  const auto is_first = [&](FactorIndex error) { return std::abs(end(error) - first) <= kRounding * first; };
+  if (!std::isfinite(first) || !std::ranges::all_of(part.factors, is_first)) return {};
+  return first;
+}
+
+/// Adds a warning for each distribution of errors that end well before or beyond the tolerances of their parts.
+void doubt_ends(std::span<const AllocatedPart> parts, Study& study) {
+  constexpr double kAlike = 0.05;  // relative; a normal truncated at 3 sigma ends 3.04 of its standard deviations away
+  std::map<std::pair<double, double>, std::vector<std::string_view>> parts_of;  // by sigmas and the end in sigmas
+  for (const AllocatedPart& part : parts) {
+    const auto end = end_in_sigmas(part, study);
+    if (end && std::abs(*end - part.sigmas) > kAlike * *end) parts_of[{part.sigmas, *end}].push_back(part.name);
+  }
+  for (const auto& [numbers, names_of_parts] : parts_of) {
+    const auto& [sigmas, end] = numbers;
+    const std::string others =
+        names_of_parts.size() == 1 ? "" : " and " + counted(names_of_parts.size() - 1, "more part", "more parts");
+    study.doubts.push_back(fmt::format(
+        "the errors of part '{}'{} end {:.4g} standard deviations from their mean, but a tolerance is {:.4g} of them: "
+        "what is certified are errors that end at {:.3g} times the tolerance; write sigmas = {:.4g} if errors may lie "
+        "anywhere within it",
+        names_of_parts.front(), others, end, sigmas, end / sigmas, end));
+  }
+}
+
 void read_parts(const StudyValue& value, Study& study, const Reading& reading) {
   const auto usual = read_sigmas(reading.root.section("analysis"));
   std::vector<AllocatedPart>& parts = asked_of<AllocationOptions>(study.analysis).parts;
@@ -105,6 +144,7 @@ void read_parts(const StudyValue& value, Study& study, const Reading& reading) {
   }
   if (parts.empty()) value.fail("is empty", "write [[analysis.parts]] with factors, e.g. factors = \"linear\"");
   complete_zones(value, study, parts);
+  doubt_ends(parts, study);
 }
 
 std::string parts_lines(const Study& study) {

@@ -3,7 +3,9 @@
 #include <numbers>
 
 #include "models/file/metric_check.h"
+#include "models/file/structure.h"
 #include "tests/models/file/files.h"
+#include "tests/models/file/wrong.h"
 
 namespace poesy::file {
 namespace {
@@ -23,6 +25,27 @@ TEST(Frames, AreRightHanded) {
         EXPECT_NEAR(R.determinant(), 1.0, 3e-15);
       }
     }
+  }
+}
+
+/// An axis of a universal joint that lies along its leg is asked about, at either end of the leg.
+TEST(Frames, OfUniversalJointsLieAcrossTheLeg) {
+  const auto found = [](const std::string& written, const std::string& instead) {
+    const MechanismFile file =
+        read_mechanism_file(replaced(text_of("linear-delta-drawing"), {written, instead}), "m.toml");
+    return axes_along_legs(mechanism(file, default_geometry(file)));
+  };
+  EXPECT_TRUE(found("axis = \"y\"", "axis = \"y\"").empty());
+  const std::vector<std::string> first =
+      found(R"(axis = "y", axis2 = ["h", 0, "r - R"])", R"(axis = "y", axis2 = ["r - R", 0, "-h"])");
+  ASSERT_EQ(first.size(), 1u);
+  EXPECT_EQ(first.front().find("axis2 of joint B of limb"), 0u) << first.front();
+  const std::vector<std::string> last =
+      found(R"(axis = ["h", 0, "r - R"], axis2 = "y")", R"(axis = ["r - R", 0, "-h"], axis2 = "y")");
+  ASSERT_EQ(last.size(), 1u);
+  EXPECT_EQ(last.front().find("axis of joint C of limb"), 0u) << last.front();
+  for (const char* name : {"rps3", "ups6", "upr2-rpu", "mixed6", "odd6", "flat-delta", "printer-universal"}) {
+    EXPECT_TRUE(axes_along_legs(from_file(name)).empty()) << name;
   }
 }
 

@@ -106,6 +106,28 @@ TEST(StudyOfTolerances, HasDefaults) {
   EXPECT_EQ(part.hi, std::numeric_limits<double>::infinity());
 }
 
+TEST(StudyOfTolerances, WarnsIfErrorsEndElsewhereThanAtTheTolerance) {
+  const auto doubts = [](const std::string& distribution, const std::string& sigmas) {
+    return read(with_analysis(
+                    kLimits + "sigmas = " + sigmas + "\n[[analysis.parts]]\nfactors = \"linear\"\neach = true\n",
+                    "errors.linear = { distribution = " + distribution + " }\n"))
+        .doubts;
+  };
+  const std::string uniform = "\"uniform\", half_width = \"1 um\"";
+  ASSERT_EQ(doubts(uniform, "3").size(), 1u);
+  EXPECT_EQ(
+      doubts(uniform, "3").front(),
+      "the errors of part 'delta_1' and 1 more part end 1.732 standard deviations from their mean, but a "
+      "tolerance is 3 of them: what is certified are errors that end at 0.577 times the tolerance; write sigmas = "
+      "1.732 if errors may lie anywhere within it");
+  EXPECT_TRUE(doubts(uniform, "1.73").empty());
+  EXPECT_EQ(doubts("\"triangular\", half_width = \"1 um\"", "3").size(), 1u);
+  EXPECT_TRUE(doubts("\"triangular\", half_width = \"1 um\"", "2.449").empty());
+  EXPECT_TRUE(doubts("\"truncated-normal\", sigma = \"1 um\", half_width = \"3 um\"", "3").empty());
+  EXPECT_EQ(doubts("\"truncated-normal\", sigma = \"1 um\", half_width = \"1 um\"", "3").size(), 1u);
+  EXPECT_TRUE(doubts("\"normal\", sigma = \"1 um\"", "1").empty());
+}
+
 TEST(StudyOfTolerances, TakesItsKeys) {
   const Study study = study_of(kLimits +
                                "yield = 0.99\nconfidence = 0.9\nsamples = 500\naim = \"equal-tolerance\"\ncpk = 2\n"
