@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "engine/report/display.h"
 #include "engine/report/report_kind.h"
 #include "engine/report/requirements.h"
+#include "engine/stats/proportion.h"
 
 namespace poesy {
 namespace {
@@ -140,6 +142,28 @@ std::string remedy_text(const Merit& first, const Merit& merit, std::size_t resu
   return text;
 }
 
+/// The shares of machines within each limit as figures of merit. Empty if machines are not judged, or by one limit
+/// only, because then the share within it is the yield. Few measured parts leave open more than the number of machines
+/// does, so errors drawn from them give no interval.
+std::vector<Merit> limit_merits(const StoredResult& result) {
+  if (!result.verdicts || !result.verdicts->yield || result.verdicts->limits.size() < 2) return {};
+  const YieldVerdict& yield = *result.verdicts->yield;
+  std::vector<Merit> list;
+  for (const LimitVerdict& limit : result.verdicts->limits) {
+    const Estimate share = proportion(limit.within, limit.tried, yield.conf_level);
+    Merit merit{.what = std::string(kLimitMerit) + result.responses[limit.response].name,
+                .unit = "%",
+                .value = 100.0 * share.value,
+                .most_best = true};
+    if (!yield.with_parts) {
+      merit.low = 100.0 * share.interval.low;
+      merit.high = 100.0 * share.interval.high;
+    }
+    list.push_back(std::move(merit));
+  }
+  return list;
+}
+
 /// The caption of the table of these figures of merit. first: name of the first of them.
 std::string merits_caption(std::span<const std::vector<Merit>> results, const std::string& first) {
   if (results.size() > 2) return "Which is better: each against A";
@@ -195,6 +219,9 @@ std::vector<std::vector<Merit>> compared_merits(const ReportKind& kind, std::spa
   std::vector<std::vector<Merit>> found;
   for (const StoredResult* result : results) {
     found.push_back(kind.merits(*result, response));
+    if (find(found.back(), kYieldMerit) != nullptr) {
+      std::ranges::move(limit_merits(*result), std::back_inserter(found.back()));
+    }
     const PosesFrom poses = poses_from(kind, *results.front(), *result);
     for (Merit& merit : found.back()) merit.others = other_requirements(*results.front(), *result, merit.what, poses);
   }
@@ -254,6 +281,8 @@ std::string merit_sentences(const std::vector<Merit>& a, const std::vector<Merit
   for (const Merit& merit : a) {
     const Merit* other = find(b, merit.what);
     if (other == nullptr) continue;
+    const bool is_of_limit = merit.what.starts_with(kLimitMerit);
+    if (is_of_limit && change_of(merit, *other).verdict > Change::worse) continue;  // the table has it
     if (other->others.empty()) {
       sentences.push_back(sentence(merit, *other, letter));
     } else {

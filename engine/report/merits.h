@@ -47,6 +47,10 @@ inline constexpr std::string_view kYieldMerit = "yield";
 /// What the cost of an allocation is called as a figure of merit.
 inline constexpr std::string_view kCostMerit = "cost of all parts";
 
+/// The beginning of what the share of machines within one limit is called as a figure of merit; the name of the limited
+/// response follows.
+inline constexpr std::string_view kLimitMerit = "share within the limit of ";
+
 /// The largest number of results that can be compared, because letters name them.
 inline constexpr std::size_t kMostResults = 26;
 
@@ -62,9 +66,10 @@ std::string compared_response(std::span<const StoredResult* const> results, cons
 /// uncertainty from the small number of measured parts.
 Merit yield_merit(const YieldVerdict& yield);
 
-/// The figures of merit of each of these results; totals are those of compared_response(). wanted: as there. The lists
-/// are empty if the kind of study has no figures of merit, or if the results have different metrics, because with
-/// different metrics equal names mean different things.
+/// The figures of merit of each of these results; totals are those of compared_response(). wanted: as there. If
+/// machines are judged by several limits, the share of them within each limit is a figure of merit, too. The lists are
+/// empty if the kind of study has no figures of merit, or if the results have different metrics, because with different
+/// metrics equal names mean different things.
 std::vector<std::vector<Merit>> compared_merits(const ReportKind& kind, std::span<const StoredResult* const> results,
                                                 const std::string& wanted = {});
 

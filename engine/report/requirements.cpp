@@ -23,7 +23,16 @@ bool is_of(std::string_view setting, std::string_view name) {
 }
 
 /// Whether a figure of merit depends on limits that machines are judged by.
-bool judges_machines(std::string_view merit) { return merit == kYieldMerit || merit == kCostMerit; }
+bool judges_machines(std::string_view merit) {
+  return merit == kYieldMerit || merit == kCostMerit || merit.starts_with(kLimitMerit);
+}
+
+/// Whether a setting is a limit on which the figure of merit depends. Precondition: judges_machines(merit).
+bool is_its_limit(std::string_view setting, std::string_view merit) {
+  constexpr std::string_view kLimits = "analysis.limits";
+  if (!merit.starts_with(kLimitMerit)) return is_of(setting, kLimits);
+  return is_of(setting, fmt::format("{}.{}", kLimits, merit.substr(kLimitMerit.size())));
+}
 
 /// The value of a trajectory without its number of poses: "file = path.csv, time = [0 s, 2 s]".
 std::string without_points(std::string value) {
@@ -91,7 +100,7 @@ std::string required_value(const std::string& setting, const std::string& value)
 std::string_view required_by(std::string_view setting, std::string_view merit) {
   if (setting == "solver.metric") return kMetrics;
   if (judges_machines(merit)) {
-    if (is_of(setting, "analysis.limits")) return "limits";
+    if (is_its_limit(setting, merit)) return "limits";
     const bool is_of_error = is_of(setting, "errors") && setting.ends_with(".draws");
     if (setting == "analysis.draws" || is_of_error) return kDrawn;
   }

@@ -88,6 +88,25 @@ class Compare(ProgramTest):
         for words in ("B is better: ", "A is better: ", "Largest change", "'poesy sweep' judges"):
             self.assertNotIn(words, page)
 
+    def test_each_of_several_limits(self):
+        """The share within each limit has a verdict of its own, also if another limit differs."""
+        for name, angle in (("a", "0.1 deg"), ("b", "0.1 deg"), ("c", "0.09 deg")):
+            study = (self.folder / f"{name}.toml").read_text()
+            self.write(f"{name}.toml", study.replace('gap = "0.04 mm"', f'gap = "0.04 mm", angular_deformation = "{angle}"'))
+            self.succeeds("run", f"{name}.toml", "--quiet")
+        shown = json.loads(self.succeeds("show", "a.h5", "b.h5", "c.h5", "--json"))["tables"][0]["rows"]
+        gap = [row for row in shown if row["quantity"] == "share within the limit of gap"]
+        angle = [row for row in shown if row["quantity"] == "share within the limit of angular_deformation"]
+        self.assertEqual([row["verdict"] for row in gap], ["-", "better", "not told apart"])
+        self.assertEqual([row["verdict"] for row in angle[1:]], ["better", "other limits"])
+        for row, file in zip(gap, "abc"):
+            yields = json.loads(self.succeeds("show", f"{file}.h5", "--json"))["tables"][0]["rows"]
+            of_gap = next(one for one in yields if one["limit_of"] == "gap")
+            for end, key in (("value", "yield"), ("low", "low"), ("high", "high")):
+                self.assertAlmostEqual(row[end], of_gap[key], places=9)
+        self.succeeds("report", "a.h5", "b.h5", "-o", "two.html")
+        self.assertIn("B is better: the share within the limit of gap is ", (self.folder / "two.html").read_text())
+
     def test_equal_warnings_are_one(self):
         for name in ("a", "b"):
             study = (self.folder / f"{name}.toml").read_text()

@@ -186,6 +186,11 @@ double largest(std::span<const double> at_poses) {
 
 constexpr double kNoticeable = 0.001;  // least share of a mean square that a table mentions
 
+/// Returns true if errors that belong to no part make up at least this share of the mean square of a limited response.
+bool have_fixed_share(const Result& found, double least) {
+  return std::ranges::any_of(found.fixed_share.all(), [&](double share) { return share >= least; });
+}
+
 /// A note on the share of the mean square that belongs to no part, under the limit that is used most. Empty if the
 /// share is hardly anything.
 std::string fixed_note(const Result& found) {
@@ -278,7 +283,7 @@ Table use_table(const StoredResult& result) {
                                        return percent_cell(std::round(1e4 * largest(found.limit_use.row(r))) / 1e4);
                                      }}};
   std::ranges::move(pose_columns(result, "used", found.limit_use, 0), std::back_inserter(columns));
-  const bool has_fixed = std::ranges::any_of(found.fixed_share, [](double share) { return share >= kNoticeable; });
+  const bool has_fixed = have_fixed_share(found, kNoticeable);
   if (has_fixed) columns.push_back(share_column("fixed_share", "in no part", found.fixed_share, 3));
   Table table{
       .name = "allocation_limits",
@@ -374,6 +379,12 @@ void append_curves(const Result& found, std::vector<Table>& tables) {
   }
   if (!found.curve_factor.empty()) {
     Table table{.name = "cost_of_limits", .caption = "What other limits would cost", .columns = {}};
+    constexpr double kConsiderable = 0.05;  // other limits then change the distribution of the response noticeably
+    if (have_fixed_share(found, kConsiderable)) {
+      table.notes.emplace_back(
+          "errors that are in no part keep their size, so far from the study's limits these costs may be off by a "
+          "third; run the study with the limits that you want");
+    }
     add_costs(found, found.curve_factor_cost,
               {number_column("factor", "all limits times"),
                [&](std::size_t k) { return number_cell(found.curve_factor[k]); }},

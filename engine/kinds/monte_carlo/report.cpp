@@ -512,19 +512,17 @@ void warn(const StoredResult& result, std::vector<std::string>& list) {
   if (std::string text = not_settled_text(result, settling(result)); !text.empty()) list.push_back(std::move(text));
 }
 
-/// The numbers over the samples of all poses, with their names; quantiles in the order of the levels.
+/// The numbers over the samples of all poses that can be compared, with their names; quantiles in the order of the
+/// levels. The smallest and the largest sample are left out, because they depend on the number of samples.
 std::vector<std::pair<std::string, std::function<double(std::size_t r)>>> overall(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   const auto of = [](const MonteCarloResult::Overall& numbers) { return [&](std::size_t r) { return numbers(r); }; };
   std::vector<std::pair<std::string, std::function<double(std::size_t)>>> list{
-      {"mean", of(found.overall_mean)},
-      {"standard deviation", of(found.overall_std)},
-      {"smallest", of(found.overall_min)}};
+      {"mean", of(found.overall_mean)}, {"standard deviation", of(found.overall_std)}};
   for (std::size_t q = 0; q < found.levels.size(); ++q) {
     list.emplace_back(shortest(100.0 * found.levels[q]) + " % quantile",
                       [&found, q](std::size_t r) { return found.overall_quantiles(r, q); });
   }
-  list.emplace_back("largest", of(found.overall_max));
   return list;
 }
 

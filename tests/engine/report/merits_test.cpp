@@ -219,6 +219,10 @@ TEST(OtherRequirements, AreErrorsThatOnlyOneResultDrawsAtEachPose) {
 TEST(RequiredBy, KnowsTheKeysOfASweep) {
   EXPECT_EQ(required_by("analysis.limits.gap", kYieldMerit), "limits");
   EXPECT_EQ(required_by("analysis.limits.gap", "root mean square of gap"), "");
+  const std::string within_gap = std::string(kLimitMerit) + "gap";
+  EXPECT_EQ(required_by("analysis.limits.gap", within_gap), "limits");
+  EXPECT_EQ(required_by("analysis.limits.rotation", within_gap), "");
+  EXPECT_EQ(required_by("analysis.draws", within_gap), "draws");
   EXPECT_EQ(required_by("analysis.yield", kCostMerit), "wanted yields");
   EXPECT_EQ(required_by("analysis.yield", kYieldMerit), "");
   EXPECT_EQ(required_by("analysis.draws", kYieldMerit), "draws");
