@@ -355,4 +355,14 @@ std::vector<std::string> doubtful_zones(const Mechanism& mechanism) {
   return list;
 }
 
+std::vector<std::string> doubtful_clearances(const Mechanism& mechanism) {
+  const auto found =
+      std::ranges::find_if(mechanism.features, [](const Feature& one) { return one.clearance.has_value(); });
+  if (found == mechanism.features.end() || home_mobility(mechanism).over_constraints == 0) return {};
+  return {
+      fmt::format("the limbs are over-constrained, and {} is drawn like other errors, so it adds to the gap between "
+                  "them; in a machine the play of a joint takes a gap up",
+                  found->label)};
+}
+
 }  // namespace poesy::file

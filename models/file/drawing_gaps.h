@@ -22,4 +22,8 @@ std::vector<std::string> uncovered_directions(const Mechanism& mechanism);
 /// size is less than half or more than twice the length of its part in that direction.
 std::vector<std::string> doubtful_zones(const Mechanism& mechanism);
 
+/// A clause about a clearance in an over-constrained mechanism, in which it adds to the mismatch between limbs although
+/// the play of a real joint takes mismatch up. At most one.
+std::vector<std::string> doubtful_clearances(const Mechanism& mechanism);
+
 }  // namespace poesy::file

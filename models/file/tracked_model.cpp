@@ -100,7 +100,7 @@ std::vector<std::string> TrackedModel::unusual_geometry() const {
 
 std::vector<std::string> TrackedModel::unusual_errors() const {
   std::vector<std::string> list;
-  for (const auto& find : {unlike_limbs, doubtful_zones, uncovered_directions}) {
+  for (const auto& find : {unlike_limbs, doubtful_zones, doubtful_clearances, uncovered_directions}) {
     for (std::string& found : find(mechanism_)) list.push_back(std::move(found));
   }
   return list;

@@ -83,6 +83,18 @@ TEST(DrawingGaps, AreWithoutZonesAndStatedErrors) {
   EXPECT_EQ(uncovered_directions(read(text_of(kName) + stated)), fewer);
 }
 
+/// The pins of the planar 3-RRR, which is over-constrained, and those of a Delta, which is not.
+TEST(DrawingGaps, AClearanceInAnOverConstrainedMechanismIsDoubtful) {
+  const std::string last = R"({ name = "C", type = "R", at = ["c", 0, 0], axis = "z" } ])";
+  const std::string pin =
+      "\nclearances = [ { name = \"play\", joint = \"C\", length = \"20 mm\", fit = \"10 H7/f7\" } ]";
+  const Clauses found = doubtful_clearances(read(replaced(text_of("rrr3"), {last, last + pin})));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NE(found.front().find("play is drawn like other errors, so it adds to the gap"), std::string::npos);
+  EXPECT_TRUE(doubtful_clearances(from_file("rrr3")).empty());
+  EXPECT_TRUE(doubtful_clearances(from_file("designed-delta")).empty());
+}
+
 TEST(DrawingGaps, AreNotSaidWithoutADrawing) { EXPECT_TRUE(uncovered_directions(from_file("rrr3")).empty()); }
 
 /// What the model itself says of single components: those in the list move the platform, and of the others those that
