@@ -242,12 +242,7 @@ Reached ascend(const std::vector<Feature>& features, const std::vector<std::vect
 
 Extreme extreme(const Feature& feature, const OfErrors& slopes) {
   POESY_EXPECTS(slopes.size() == feature.middle.size() + feature.tilt.size());
-  if (feature.clearance) {
-    Feature loose = feature;
-    loose.location = Zone{"position", feature.clearance->most, {}};
-    loose.clearance.reset();
-    return extreme(loose, slopes);
-  }
+  if (feature.clearance) return extreme(pin_in_zone(feature, feature.clearance->most), slopes);
   Extreme found;
   switch (feature.kind) {
     case FeatureKind::axis:

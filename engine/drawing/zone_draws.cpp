@@ -78,7 +78,7 @@ bool plane_is_inside(const Feature& feature, std::span<const double> middle, std
 
 bool are_drawn_together(const Feature& feature, const ZoneScatter& scatter) {
   const bool has_zone = feature.location || feature.orientation;
-  if (scatter.is_normal() || feature.clearance || !has_zone) return false;
+  if (scatter.is_normal() || !(has_zone || feature.clearance)) return false;
   return scatter.shape == ScatterShape::boundary || feature.errors().size() > 1;
 }
 
@@ -103,6 +103,10 @@ bool is_inside(const Feature& feature, std::span<const double> errors) {
 ZoneDraws::ZoneDraws(Feature feature, const ZoneScatter& scatter)
     : feature_(std::move(feature)), shape_(scatter.shape), size_(feature_.errors().size()) {
   POESY_EXPECTS(are_drawn_together(feature_, scatter) && size_ <= kMostErrors);
+  if (feature_.clearance) {
+    shape_ = feature_.clearance->touches ? ScatterShape::boundary : ScatterShape::uniform;
+    feature_ = pin_in_zone(feature_, std::sqrt(feature_.clearance->mean_square));
+  }
   if (shape_ != ScatterShape::inspected) return;
   const FeatureSigmas normal = feature_sigmas(feature_, sigmas_of(feature_, scatter));
   std::fill_n(sigma_.begin(), feature_.middle.size(), normal.middle.value_or(0.0));

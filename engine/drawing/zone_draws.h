@@ -16,7 +16,8 @@ bool are_drawn_together(const Feature& feature, const ZoneScatter& scatter);
 /// Returns true if a feature with these errors (m, in the order of Feature::errors()) is inside its zones.
 bool is_inside(const Feature& feature, std::span<const double> errors);
 
-/// Draws the errors of one feature together.
+/// Draws the errors of one feature together. The ends of a pin with a clearance are drawn on the circles, or in the
+/// discs, whose diameter is the root mean square of the clearance.
 class ZoneDraws {
  public:
   /// The largest number of errors of a feature.

@@ -35,6 +35,13 @@ FeatureSigmas clearance_sigmas(const Clearance& clearance) {
 
 }  // namespace
 
+Feature pin_in_zone(const Feature& feature, double clearance) {
+  Feature pin = feature;
+  pin.location = Zone{"position", clearance, {}};
+  pin.clearance.reset();
+  return pin;
+}
+
 double widest_orientation(FeatureKind kind) {
   return kind == FeatureKind::rectangle ? std::sqrt(2.0 / 3.0) : 1.0 / sqrt2;
 }

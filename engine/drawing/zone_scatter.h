@@ -47,6 +47,10 @@ struct FeatureSigmas {
 /// with a clearance has the mean square that follows from the clearance.
 FeatureSigmas feature_sigmas(const Feature& feature, double sigmas);
 
+/// A pin that is loose in its bore by this clearance (m), as the axis of a feature whose zone of location has this
+/// diameter: each end of the pin's axis is in a disc of this diameter. Precondition: the feature has a clearance.
+Feature pin_in_zone(const Feature& feature, double clearance);
+
 /// The largest useful zone of orientation, as a share of the zone of location. A wider zone does not limit the feature
 /// further.
 double widest_orientation(FeatureKind kind);

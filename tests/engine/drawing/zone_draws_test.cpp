@@ -266,8 +266,40 @@ TEST(ZoneDraws, LeaveSingleErrorsAndNormalsAlone) {
   EXPECT_FALSE(are_drawn_together(feature_of(axis, 0.0, 0.0), {.shape = ScatterShape::uniform}));
   Feature loose = feature_of(axis, 0.05, 0.0);
   loose.clearance = Clearance{0.05, 0.001};
-  EXPECT_FALSE(are_drawn_together(loose, {.shape = ScatterShape::inspected}));
+  EXPECT_FALSE(are_drawn_together(loose, {}));
   EXPECT_NEAR(scatter_sigmas(rod, {.shape = ScatterShape::uniform}).middle.value(), 0.02 / std::sqrt(3.0), 1e-17);
+}
+
+/// Each end of a pin touches its bore, or is anywhere in it, whatever the distribution of other features; the standard
+/// deviations are those of the clearance.
+TEST(ZoneDraws, OfPinsStayInTheirBores) {
+  Feature pin = feature_of(axis, 0.05, 0.0);
+  pin.location.reset();
+  constexpr double kDiameter = 0.024;  // root mean square of the clearance
+  for (const bool touches : {true, false}) {
+    pin.clearance = Clearance{0.041, kDiameter * kDiameter, touches};
+    for (const ScatterShape shape : {ScatterShape::uniform, ScatterShape::inspected, ScatterShape::boundary}) {
+      ASSERT_TRUE(are_drawn_together(pin, {.shape = shape}));
+      constexpr std::size_t kPins = 20000;
+      std::vector<std::vector<double>> drawn(4, std::vector<double>(kPins));
+      for (std::size_t e = 0; e < drawn.size(); ++e) {
+        fill_uniforms({11, Purpose::error_samples, FactorIndex(e), PoseIndex(0)}, SampleIndex(0), drawn[e]);
+      }
+      const std::vector<std::span<double>> rows(drawn.begin(), drawn.end());
+      ZoneDraws(pin, {.shape = shape}).transform(rows);
+      std::vector<double> squared_lean(kPins);
+      for (std::size_t b = 0; b < kPins; ++b) {
+        for (const double half : {-0.5, 0.5}) {
+          const double away = std::hypot(drawn[0][b] + half * drawn[2][b], drawn[1][b] + half * drawn[3][b]);
+          ASSERT_LE(away, 0.5 * kDiameter * (1.0 + 1e-12));
+          ASSERT_GE(away, touches ? 0.5 * kDiameter * (1.0 - 1e-12) : 0.0);
+        }
+        squared_lean[b] = std::pow(drawn[2][b], 2);
+      }
+      const double lean = scatter_sigmas(pin, {.shape = shape}).tilt.value();
+      expect_mean(squared_lean, lean * lean, "squared lean");
+    }
+  }
 }
 
 }  // namespace
