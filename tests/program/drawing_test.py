@@ -263,6 +263,25 @@ class Drawing(ProgramTest):
         self.assertLess(abs(together - product), 5.0 * np.sqrt(variance / samples))
         self.assertLess(together, min(alone))
 
+    def test_pins_in_bores(self):
+        """Where zones are not normal, each end of a pin touches its bore at each pose."""
+        text = (self.folder / "delta.toml").read_text()
+        loose = 'clearances = [ { name = "play", joint = "B", length = "40 mm", fit = "8 H7/g6" } ]\n'
+        (self.folder / "delta.toml").write_text(text[:text.index("features = [")] + loose)
+        self.write("pins.toml", STUDY.format(zones='errors.zones = { distribution = "uniform" }', fidelity="first-order",
+                                             analysis='kind = "monte-carlo"\ndraws = "per machine"\nsamples = 50'))
+        self.succeeds("run", "pins.toml", "--quiet")
+        found = set()
+        for pose, machine in ((0, 3), (1, 3), (0, 17)):
+            said = self.succeeds("replay", "pins.h5", "all", pose, machine)
+            part = said[said.index("errors that vary\n"):said.index("solved as in the run")]
+            error = {line.split()[0]: float(line.split()[1]) for line in part.splitlines()[1:] if line.startswith("  ")}
+            for end in (-0.5, 0.5):
+                away = math.hypot(*(error[f"play_{axis}_2"] + end * error[f"play_lean_{axis}_2"] for axis in "xy"))
+                self.assertAlmostEqual(away, 0.5 * 17.2481883107e-6, delta=1e-14)
+            found.add(error["play_x_2"])
+        self.assertEqual(len(found), 3, "a machine draws its pins anew at each pose")
+
     ALLOCATION = """\
 kind = "allocation"
 samples = 4000
