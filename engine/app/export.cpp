@@ -139,7 +139,7 @@ Command& add_export(Command& program) {
                  "width of the tables; default: 85mm, one column of a journal; 170mm are two")
       ->needs(latex);
   command.examples = {{"tables/global.csv and others", "poesy export result.h5 -d tables"},
-                      {"tables/ranking.tex and others", "poesy export result.h5 -d tables --latex"},
+                      {"tables/ranked.tex and others", "poesy export result.h5 -d tables --latex"},
                       {"the ten errors that matter most to one response",
                        "poesy export result.h5 -d tables --latex --top 10 --response gap"},
                       {"tables as wide as a page", "poesy export result.h5 -d tables --latex --size 170mm"}};

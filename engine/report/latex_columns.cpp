@@ -139,6 +139,14 @@ Table without_empty_columns(const Table& table) {
   });
 }
 
+/// The table without the units of intervals, which are those of their values.
+Table with_short_headings(Table table) {
+  for (Column& column : table.columns) {
+    if (is_interval(column)) column.unit.clear();
+  }
+  return table;
+}
+
 /// The column of the value to which an interval belongs, or the column itself.
 std::size_t value_of(const Table& table, std::size_t c) {
   std::size_t value = c;
@@ -169,13 +177,28 @@ bool goes_with(const Table& table, std::size_t other, std::size_t left_out) {
   return value_of(table, other) == value_of(table, left_out);
 }
 
+/// Whether a column has the units of columns that have been left out. The columns to its left that it may belong to
+/// have no unit of their own, or one per unit of the error.
+bool is_orphan_unit(const Table& table, std::size_t c) {
+  if (heading_of(table.columns[c]) != "unit") return false;
+  return std::ranges::none_of(
+      table.columns.begin(), table.columns.begin() + static_cast<std::ptrdiff_t>(c), [](const Column& column) {
+        const bool has_own = !column.unit.empty() && column.unit.find("unit") == std::string::npos;
+        return column.kind == Column::Kind::number && !has_own;
+      });
+}
+
+Table without_orphan_units(const Table& table) {
+  return with_columns(table, [&](std::size_t c) { return !is_orphan_unit(table, c); });
+}
+
 /// The table without the rightmost column that is not of the answer, or without the rightmost, and without what goes
 /// with it; none if only the first column and the first number are left.
 std::optional<Table> without_a_column(const Table& table) {
   for (const bool also_answer : {false, true}) {
     for (std::size_t c = table.columns.size(); c-- > 0;) {
       if (always_stays(table, c) || (!also_answer && is_of_the_answer(table.columns[c]))) continue;
-      return with_columns(table, [&](std::size_t other) { return !goes_with(table, other, c); });
+      return without_orphan_units(with_columns(table, [&](std::size_t other) { return !goes_with(table, other, c); }));
     }
   }
   return std::nullopt;
@@ -212,7 +235,7 @@ std::string latex_cell(const Cell& cell, Column::Kind kind) {
 
 Table fitted(const Table& table, double millimetres) {
   if (fits(table, millimetres)) return table;
-  Table made = without_empty_columns(table);
+  Table made = with_short_headings(without_empty_columns(table));
   while (!fits(made, millimetres)) {
     std::optional<Table> less = without_a_group(made);
     if (!less) less = without_a_column(made);

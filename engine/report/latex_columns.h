@@ -26,7 +26,7 @@ std::string latex_cell(const Cell& cell, Column::Kind kind);
 
 /// The table with the columns that fit in a width. Columns of words are broken into lines before a column is left out.
 /// The columns are left out in this order:
-/// 1. columns without any value;
+/// 1. columns without any value, and the units in the headings of intervals, which are those of their values;
 /// 2. dispensable columns, the most dispensable first, but not limits, units and intervals;
 /// 3. the others, the rightmost first, and last limits, units and intervals.
 /// The first column and the first number that are not dispensable always stay. An interval goes with its value, and in

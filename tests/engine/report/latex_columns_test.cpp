@@ -76,6 +76,27 @@ TEST(LatexColumns, AUnitGoesWithADispensableNumber) {
   EXPECT_EQ(names(fitted(table, 40.0)), (std::vector<std::string>{"part", "cost", "share"}));
 }
 
+TEST(LatexColumns, AUnitGoesWithTheLastNumberThatNeedsIt) {
+  const Table table = table_of({text_column("error", "error"), number_column("effect", "effect", "mm"),
+                                number_column("index", "index", "mm/unit"), number_column("low", "low", "mm/unit", 1),
+                                number_column("high", "high", "mm/unit", 1), text_column("unit", "unit")});
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(names(fitted(table, 80.0)), (Names{"error", "effect", "index", "low", "high", "unit"}));
+  EXPECT_EQ(names(fitted(table, 35.0)), (Names{"error", "effect"}));
+}
+
+TEST(LatexColumns, IntervalsHaveTheUnitOfTheirValueIfThereIsLittleRoom) {
+  Table table = table_of({text_column("error", "error"), number_column("index", "index", "mm/unit"),
+                          number_column("low", "low", "mm/unit"), number_column("high", "high", "mm/unit")});
+  for (std::size_t c = 1; c < table.columns.size(); ++c) table.rows[0][c] = number_cell(2.5, 2);
+  const double all = 25.4 / 72.27 * width_of(layout_of(table, 400.0)) + 1.0;
+  EXPECT_EQ(fitted(table, all + 1.0).columns[2].unit, "mm/unit");
+  const Table narrow = fitted(table, all - 10.0);
+  EXPECT_EQ(names(narrow), names(table));
+  EXPECT_EQ(narrow.columns[2].unit, "");
+  EXPECT_EQ(narrow.columns[1].unit, "mm/unit");
+}
+
 TEST(LatexColumns, AHeadingHasTwoLinesIfItIsWiderThanTheCells) {
   const Table table =
       table_of({text_column("error", "error"), number_column("removable", "removable by all calibrations", "%")});
