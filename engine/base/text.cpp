@@ -19,13 +19,16 @@ struct Synonym {
   std::string_view ours;
 };
 
-constexpr std::array<Synonym, 7> kSynonyms{{{"std", "sigma"},
-                                            {"tolerance", "half_width"},
-                                            {"stddev", "sigma"},
-                                            {"std_dev", "sigma"},
-                                            {"sd", "sigma"},
-                                            {"gauss", "normal"},
-                                            {"gaussian", "normal"}}};
+constexpr std::array<Synonym, 10> kSynonyms{{{"std", "sigma"},
+                                             {"tolerance", "half_width"},
+                                             {"stddev", "sigma"},
+                                             {"std_dev", "sigma"},
+                                             {"sd", "sigma"},
+                                             {"gauss", "normal"},
+                                             {"gaussian", "normal"},
+                                             {"dx", "deviation_x"},
+                                             {"dy", "deviation_y"},
+                                             {"dz", "deviation_z"}}};
 
 /// The smallest number of insertions, deletions and replacements of characters between two words (Levenshtein).
 std::size_t edit_distance(std::string_view from, std::string_view to) {
@@ -189,6 +192,9 @@ std::string shell_command(const std::vector<std::string>& words) {
 std::string_view nearest(std::string_view word, std::span<const std::string_view> known) {
   const auto synonym = std::ranges::find(kSynonyms, word, &Synonym::word);
   if (synonym != kSynonyms.end() && std::ranges::find(known, synonym->ours) != known.end()) return synonym->ours;
+  const std::string lower = lower_case(word);
+  const auto same = std::ranges::find_if(known, [&](std::string_view one) { return lower_case(one) == lower; });
+  if (same != known.end()) return *same;
   const std::size_t allowed = std::max<std::size_t>(1, (word.size() + 2) / 3);
   std::string_view best;
   std::size_t best_distance = allowed + 1;

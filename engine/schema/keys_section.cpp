@@ -1,5 +1,7 @@
 #include "engine/schema/keys_section.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -144,7 +146,12 @@ std::string StudyValue::text() const {
 
 std::int64_t StudyValue::whole_number(std::int64_t least, std::int64_t most) const {
   const auto* number = node_->as_integer();
-  if (number == nullptr) wrong_type("write a whole number");
+  if (number == nullptr) {
+    constexpr double kExact = 9007199254740992.0;  // 2^53: below it doubles have all whole numbers
+    const double real = node_->value<double>().value_or(std::nan(""));
+    const bool is_whole = std::abs(real) < kExact && real == std::round(real);
+    wrong_type(is_whole ? fmt::format("write it without point and exponent: {:.0f}", real) : "write a whole number");
+  }
   const std::int64_t value = number->get();
   if (value < least) fail("is " + std::to_string(value), "it must be at least " + std::to_string(least));
   if (value > most) fail("is " + std::to_string(value), "it must be at most " + std::to_string(most));

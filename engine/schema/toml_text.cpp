@@ -1,6 +1,10 @@
 #include "engine/schema/toml_text.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <compare>
 #include <cstddef>
 #include <tuple>
@@ -50,10 +54,37 @@ void refuse_open_quote(const std::string& text, const std::string& path, const t
                    "close each text with the quote that opens it");
 }
 
-toml::table parsed(const std::string& text, const std::string& path, std::string_view remedy) {
+/// Throws InputError if the line where the TOML library noticed a mistake has quotes of a word processor, or a text
+/// without quotes: `select = boundary`.
+void refuse_missing_quotes(const std::vector<std::string_view>& lines, const std::string& path,
+                           const toml::source_position& noticed) {
+  constexpr std::array<std::string_view, 7> kTypographic{"\u201c", "\u201d", "\u201e", "\u2018",
+                                                         "\u2019", "\u00ab", "\u00bb"};
+  if (noticed.line == 0 || noticed.line > lines.size()) return;
+  const std::string_view line = lines[noticed.line - 1];
+  const Place place{path, noticed.line, noticed.column};
+  for (const std::string_view mark : kTypographic) {
+    if (line.find(mark) == std::string_view::npos) continue;
+    throw InputError(place, fmt::format("this is not TOML: the line has the typographic quote {}", mark),
+                     "write the plain quote \" before and after a text");
+  }
+  const std::size_t equals = line.find('=');
+  if (equals == std::string_view::npos) return;
+  const std::string_view value = trimmed(line.substr(equals + 1));
+  const auto is_of_word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+  const bool is_word = !value.empty() && std::isalpha(static_cast<unsigned char>(value.front())) != 0 &&
+                       std::ranges::all_of(value, is_of_word) && value != "true" && value != "false";
+  if (!is_word) return;
+  throw InputError(place, fmt::format("this is not TOML: {} is a text without quotes", printable(value)),
+                   fmt::format("write \"{}\"", printable(value)));
+}
+
+toml::table parsed(const std::string& text, const std::vector<std::string_view>& lines, const std::string& path,
+                   std::string_view remedy) {
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
+    refuse_missing_quotes(lines, path, error.source().begin);
     refuse_open_quote(text, path, error.source().begin);
     std::string_view reason = error.description();
     constexpr std::string_view kPrefix = "Error while ";
@@ -116,7 +147,7 @@ void check_numbers(const toml::table& table, const std::vector<std::string_view>
 
 toml::table parse_toml(const std::string& text, const std::string& path, std::string_view remedy) {
   const std::vector<std::string_view> lines = lines_of(text, path);
-  toml::table table = parsed(text, path, remedy);
+  toml::table table = parsed(text, lines, path, remedy);
   check_numbers(table, lines, path);
   return table;
 }

@@ -29,6 +29,10 @@ std::vector<FactorIndex> factors_of_set(const StudyValue& value, const ModelDesc
   if (model.find_factor(written)) {
     value.fail("is '" + written + "', which is a factor, not a set", "write it as a list: [\"" + written + "\"]");
   }
+  if (written.find_first_of("*?") != std::string::npos) {
+    value.fail("is '" + printable(written) + "', which is a pattern, not a set",
+               "write it as a list: [\"" + printable(written) + "\"]");
+  }
   std::vector<std::string_view> known = names(model.factor_sets);
   if (model.find_set("all") == nullptr) known.push_back("all");
   value.fail("is '" + printable(written) + "', which is not a factor set of the model", suggestion(written, known));

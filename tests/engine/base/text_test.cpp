@@ -36,6 +36,9 @@ TEST(Suggestion, NamesTheClosestWord) {
   EXPECT_EQ(suggestion("sgima", kKnown), "did you mean 'sigma'?");
   EXPECT_EQ(suggestion("half-width", kKnown), "did you mean 'half_width'?");
   EXPECT_EQ(suggestion("distributon", kKnown), "did you mean 'distribution'?");
+  EXPECT_EQ(suggestion("Sigma", kKnown), "did you mean 'sigma'?");
+  EXPECT_EQ(suggestion("X", std::vector<std::string_view>{"z", "x"}), "did you mean 'x'?");
+  EXPECT_EQ(suggestion("dz", std::vector<std::string_view>{"z", "deviation_z"}), "did you mean 'deviation_z'?");
   EXPECT_EQ(suggestion("mn", std::vector<std::string_view>{"deg", "mm"}), "did you mean 'mm'?");
 }
 

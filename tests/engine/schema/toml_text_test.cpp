@@ -72,6 +72,11 @@ TEST(ParseToml, SaysThatALineHasAQuoteTooMany) {
   expect_refused("a = t^ext\"\n", too_many);
 }
 
+TEST(ParseToml, NamesMissingAndTypographicQuotes) {
+  expect_refused("[poses]\nselect = ^boundary", {"boundary is a text without quotes", "write \"boundary\""});
+  expect_refused("select = ^\u201cboundary\u201d", {"typographic quote \u201c", "write the plain quote"});
+}
+
 /// A quote that is open elsewhere explains nothing.
 TEST(ParseToml, KeepsOtherReasonsBesideOpenQuotes) {
   expect_refused("[a^\nb = 1\nc = \"text\n", {"this is not TOML: parsing table header"});

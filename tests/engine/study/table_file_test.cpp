@@ -186,7 +186,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadTable{"ExtraColumn", "z,beta,gamma,^weight\n0,0,0,0\n", {"'weight'", "known: z, beta, gamma"}},
         BadTable{"MisspeltColumn", "z, ^bta,gamma\n0,0,0\n", {"'bta'", "did you mean 'beta'?"}},
         BadTable{"RepeatedColumn", "z,beta,^z,gamma\n0,0,0,0\n", {"'z'", "second time"}},
-        BadTable{"NoHeader", "^0,0,0\n0,0,0\n", {"column '0'"}},
+        BadTable{
+            "NoHeader",
+            "^0,0,0\n0,0,0\n",
+            {"'0' is a number where the name of a column must be", "name the columns in the first line", "z [mm]"}},
+        BadTable{"UnitInTheName", "^z_mm,beta,gamma\n0,0,0\n", {"write its unit in brackets: z [mm]"}},
+        BadTable{"LargeLetter", "^Z,beta,gamma\n0,0,0\n", {"did you mean 'z'?"}},
         BadTable{"MixedCoordinates",
                  "^z,beta,difference\n0,0,0\n",
                  {"mix coordinates", "z,beta,gamma | depth,sum,difference"}},
