@@ -19,7 +19,7 @@ using namespace poesy;
 
 constexpr std::size_t kSamples = 1000;
 
-/// Positions among the fidelities of mechanisms from files.
+/// Indices in ModelDescription::fidelities for mechanisms from files.
 /// @{
 constexpr std::size_t kExact = static_cast<std::size_t>(chain::Fidelity::exact);
 constexpr std::size_t kFirstOrder = static_cast<std::size_t>(chain::Fidelity::first_order);
@@ -27,18 +27,18 @@ constexpr std::size_t kFirstOrder = static_cast<std::size_t>(chain::Fidelity::fi
 
 /// A mechanism of tests/data/mechanisms at a pose.
 struct Mechanism {
-  std::string file;          ///< its name, without ".toml"
-  std::string metric;        ///< by which it is solved
-  std::vector<double> pose;  ///< SI; empty: the middle of the workspace
+  std::string file;          ///< name of the file, without ".toml"
+  std::string metric;        ///< metric of the model: "platform" or "stiffness"
+  std::vector<double> pose;  ///< pose (SI); empty: the middle of the workspace
 };
 
-/// What is measured.
+/// One case of the benchmark.
 struct Case {
   Mechanism mechanism;
-  std::size_t fidelity;  ///< position among the model's fidelities
+  std::size_t fidelity;  ///< index in ModelDescription::fidelities
   double size;           ///< standard deviation of errors, mm and deg
   std::string isa;       ///< instruction set
-  bool one = false;      ///< whether errors vary one after the other, in ranges that are known, and not all at once
+  bool one = false;      ///< true: only one error varies in each block, in a known range; false: all errors vary
 };
 
 std::string text_of(const Mechanism& mechanism) {
@@ -55,7 +55,7 @@ std::unique_ptr<Model> built(const Mechanism& mechanism, std::size_t fidelity) {
   return by_metric(entry, mechanism.metric).build(geometry, fidelity);
 }
 
-/// A block of normal errors at one pose, solved again and again.
+/// Measures solves of a block of kSamples samples with normal errors at one pose.
 void solves(benchmark::State& state, const Case& which) {
   const std::unique_ptr<Model> model = built(which.mechanism, which.fidelity);
   std::vector<double> pose = which.mechanism.pose;

@@ -6,21 +6,22 @@
 
 namespace poesy::bench {
 
-/// Floating-point operations of CountingNumber since the start of the program. Comparisons, signs, minima, maxima and
-/// roundings are left out.
+/// Numbers of floating-point operations of CountingNumber since operation_counts was last set to zero. Comparisons,
+/// selections, changes of sign, magnitudes, minima, maxima and roundings are not counted.
 struct OperationCounts {
-  std::uint64_t additions = 0;  ///< and subtractions
+  std::uint64_t additions = 0;  ///< additions and subtractions
   std::uint64_t multiplications = 0;
   std::uint64_t multiply_adds = 0;
   std::uint64_t divisions = 0;
   std::uint64_t roots = 0;
 
-  /// A multiply-add is two operations, everything else one.
+  /// The number of operations. A multiply-add counts as two, every other operation as one.
   std::uint64_t total() const { return additions + multiplications + 2 * multiply_adds + divisions + roots; }
 };
 inline OperationCounts operation_counts;
 
-/// simd::Number that counts what is done with it. As large as a double, so that a kernel's scratch fits.
+/// A simd::Number that counts its operations in operation_counts. It is as large as a double, because kernels get their
+/// scratch memory as an array of doubles.
 struct CountingNumber {
   using Number = simd::Number;
   using MaskType = simd::NumberMask;

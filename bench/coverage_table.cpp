@@ -9,8 +9,8 @@
 #include "tests/engine/kinds/sobol/shapley_coverage.h"
 #include "tests/engine/stats/effect_coverage.h"
 
-// The coverage of intervals in engine/docs/theory.md, by the code of the tests and with more repetitions:
-// coverage_table [REPETITIONS].
+// Measures the coverage of the intervals that engine/docs/theory.md states, by the code of the tests but with more
+// repetitions. Usage: coverage_table [REPETITIONS], by default 10000.
 
 namespace {
 
@@ -37,7 +37,8 @@ void print_poses(int repetitions) {
   }
 }
 
-/// good: the yield.
+/// Prints the coverage of the intervals of yield gradients for several numbers of machines. shape: name of the errors'
+/// distribution. good: the true yield.
 void print_gradients(const char* shape, double good, const YieldCase& yield, int repetitions) {
   for (const std::size_t machines : {250U, 500U, 1000U, 2000U, 5000U, 20000U}) {
     fmt::print("{}, yield {:.4f}, {:5} machines, {:7.1f} rejects: gradient {:.1f} %\n", shape, good, machines,

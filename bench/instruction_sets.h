@@ -12,10 +12,10 @@
 
 namespace poesy::bench {
 
-/// Makes evaluators that are built from now on use this instruction set.
+/// Selects the instruction set of all evaluators that are built after this call.
 inline void choose_instruction_set(const std::string& name) { setenv("POESY_ISA", name.c_str(), 1); }
 
-/// An evaluator that uses this instruction set. Threads may ask at the same time.
+/// An evaluator that uses this instruction set. Several threads may call this function at the same time.
 inline std::unique_ptr<Evaluator> evaluator_with(const std::string& isa, const Model& model,
                                                  const SolverOptions& options) {
   static std::mutex environment;
@@ -24,7 +24,7 @@ inline std::unique_ptr<Evaluator> evaluator_with(const std::string& isa, const M
   return model.evaluator(options);
 }
 
-/// The instruction sets that this machine has, slowest first.
+/// The instruction sets that this computer supports, the slowest first.
 inline std::vector<std::string> instruction_sets() {
   std::vector<std::string> found;
   for (const char* name : {"plain", "neon", "avx2", "avx512"}) {
@@ -33,7 +33,7 @@ inline std::vector<std::string> instruction_sets() {
       simd::selected_isa();
       found.emplace_back(name);
     } catch (const InputError&) {
-      // Not on this machine.
+      // This computer does not support the instruction set.
     }
   }
   unsetenv("POESY_ISA");

@@ -12,7 +12,7 @@ using poesy::lie::Transform;
 
 constexpr std::size_t kInputs = 1024;
 
-/// Screws of many sizes, so that no branch can be learned.
+/// Random screws of sizes from about 1e-6 to 2, so that the processor cannot predict branches that depend on the size.
 std::vector<Screw<double>> screws() {
   std::mt19937_64 engine(1);
   std::uniform_real_distribution<double> exponent(-6.0, 0.3), part(-1.0, 1.0);

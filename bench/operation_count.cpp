@@ -9,8 +9,8 @@
 #include "models/chain/block_kernel.h"
 #include "models/chain/block_kernels.h"
 
-// The kernels "plain" of this program count. The linker finds them here and does not take those of the library, so all
-// code around the kernels is that of the other programs.
+// In this program, the kernels of the instruction set "plain" are compiled for CountingNumber. The linker takes these
+// definitions instead of the library's; all other code is that of the library.
 namespace poesy::assembly {
 
 template <>
@@ -34,7 +34,8 @@ namespace {
 
 using namespace poesy;
 
-/// varied: number of errors that vary in a solve. responses: number of responses of a solve.
+/// Prints the numbers of operations and bytes as a line of JSON. varied: number of errors that vary in a solve.
+/// responses: number of responses of a solve.
 void print(const char* name, const SolveCounts& counts, std::size_t varied, std::size_t responses) {
   const auto solves = static_cast<double>(counts.total());
   const auto iterations = static_cast<double>(counts.iterations);
@@ -49,7 +50,8 @@ void print(const char* name, const SolveCounts& counts, std::size_t varied, std:
              share(did.divisions + did.roots), sizeof(double) * (varied + responses));
 }
 
-/// Counts all operations of the solves of a study of one error at a time, with the prediction of starts.
+/// Counts the operations of work units (WorkUnit) of a study that varies one error at a time, including the prediction
+/// of starting points. units: number of units.
 void count_units(const char* name, Study study, SolverOptions::Method method, std::size_t units) {
   study.solver.method = method;
   const auto model = build_model(study.mechanism);

@@ -11,14 +11,15 @@ namespace {
 
 using namespace poesy;
 
-/// The machine's limit for kernels that do nothing but multiply-adds.
+/// Measures the largest rate of floating-point operations that this computer reaches, by a loop of multiply-adds.
 void peak(benchmark::State& state, std::uint64_t (*multiply_adds)(std::uint64_t)) {
   std::uint64_t operations = 0;
   for (auto _ : state) operations += multiply_adds(100'000);
   state.counters["operations/s"] = benchmark::Counter(static_cast<double>(operations), benchmark::Counter::kIsRate);
 }
 
-/// The machine's limit for kernels that do nothing but read numbers from a cache or from memory.
+/// Measures the largest rate at which this computer reads numbers from a cache or from memory. bytes: size of the
+/// array, which decides where it is stored.
 void read(benchmark::State& state, double (*sum)(std::span<const double>), std::size_t bytes) {
   const std::vector<double> numbers(bytes / sizeof(double), 1.0);
   std::uint64_t passes = 0;

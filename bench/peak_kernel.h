@@ -9,10 +9,12 @@
 
 namespace poesy::bench {
 
-/// More accumulators than two pipelines of five cycles can hold, and few enough for sixteen registers.
+/// The number of independent accumulators. It exceeds the ten multiply-adds that two pipelines with a latency of five
+/// cycles hold at a time, and all accumulators fit into sixteen registers.
 static constexpr int kAccumulators = 12;
 
-/// x = x m + a, with m and a hidden from the optimiser.
+/// Repeats x = x m + a for all accumulators x. The first asm statement hides the values of m and a from the optimiser.
+/// Returns the number of floating-point operations.
 template <class Vector>
 static std::uint64_t multiply_adds(std::uint64_t repetitions) {
   Vector x[kAccumulators] = {};

@@ -10,7 +10,8 @@
 
 namespace poesy::bench {
 
-/// The study of Du et al. 2022, Section 6.2, with a number of poses and samples to choose.
+/// The study of Du et al. 2022, Section 6.2, with this number of poses, and this number of samples for each error and
+/// pose.
 inline Study published_study(std::size_t poses, std::size_t samples) {
   const CatalogEntry* entry = find(registry(), "2upr-rpu");
   const ModelDescription& model = entry->description;
@@ -32,7 +33,7 @@ inline Study published_study(std::size_t poses, std::size_t samples) {
   return study;
 }
 
-/// The same by the metric of the platform, exact or to first order.
+/// The study of published_study(), but solved with the metric of the platform. fidelity: 0: exact; 1: to first order.
 inline Study platform_study(std::size_t poses, std::size_t samples, std::size_t fidelity = 0) {
   Study study = published_study(poses, samples);
   study.mechanism.entry = study.mechanism.entry->other_metric.get();
@@ -44,7 +45,7 @@ inline Study platform_study(std::size_t poses, std::size_t samples, std::size_t 
 inline constexpr std::size_t kPublishedPoses = 158;
 inline constexpr std::size_t kPublishedSamples = 1000;
 
-/// Every step-th pose of a set, the first one included.
+/// The poses with the indices 0, step, 2 step, ... of a set.
 inline PoseSet every(std::size_t step, const PoseSet& poses) {
   std::vector<double> values;
   for (std::size_t m = 0; m < poses.size(); m += step) {
@@ -54,11 +55,12 @@ inline PoseSet every(std::size_t step, const PoseSet& poses) {
   return {poses.coordinates(), std::move(values)};
 }
 
-/// Walks through a plan's units with a stride that is prime to the published table's length: a few units already
-/// hold many factors and poses.
+/// The n-th unit on a walk through the plan with a stride of 1597 units. The stride has no common factor with the
+/// number of units of the published study, so even a few units have many different factors and poses.
 inline WorkUnit scattered_unit(const Plan& plan, std::size_t n) { return plan.unit(n * 1597 % plan.units()); }
 
-/// Samples of all factors of a study's model at one pose, from the engine's streams, scaled. [F x count], row-major.
+/// [factors x count] Samples of all errors of the study's model at one pose (SI), row-major: the draws of the study,
+/// multiplied by `scale`.
 inline std::vector<double> samples_of_all_errors(const Study& study, double scale, PoseIndex pose, std::size_t count) {
   const std::vector<Distribution>& distributions = study.errors.by_factor;
   std::vector<double> values(distributions.size() * count);

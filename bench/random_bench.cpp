@@ -13,7 +13,7 @@ poesy::StreamAddress address_of(std::size_t pose) {
   return {.seed = 1, .factor = poesy::FactorIndex(7), .pose = poesy::PoseIndex(pose)};
 }
 
-/// Seconds per draw, printed by the library with its own unit prefix (n for nano).
+/// Reports the time (s) for one draw. Google Benchmark prints it with a unit prefix, such as n for nano.
 void report_draws(benchmark::State& state) {
   state.counters["time_per_draw"] = benchmark::Counter(
       static_cast<double>(kDraws), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
@@ -41,7 +41,8 @@ void FillUniforms(benchmark::State& state) {
   report_draws(state);
 }
 
-/// Uniforms and quantiles together, so that every iteration sees new values.
+/// Measures the drawing of uniforms and their conversion to errors together, so that every iteration converts new
+/// values.
 void FillAndTransform(benchmark::State& state, const poesy::Distribution& distribution) {
   std::vector<double> draws(kDraws);
   std::size_t pose = 0;

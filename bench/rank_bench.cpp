@@ -15,9 +15,11 @@
 #include "engine/run/run_options.h"
 #include "tests/support/fake_ranks.h"
 
-// How many units one writer takes: hands out, receives, unpacks and merges. Ranks solve nothing, but send what a unit
-// gives. Rank 0 works on few units itself, so nearly all come from others. By mpirun on as many ranks as it starts,
-// else on threads of this process: rank_bench [RANKS [UNITS_PER_CELL]].
+// Measures how many work units (WorkUnit) per second rank 0 can hand out, receive, unpack and merge. The ranks solve
+// nothing: each unit has the same prepared output. Rank 0 sleeps 2 ms for each unit that it takes itself, so nearly all
+// outputs come from other ranks. Usage: rank_bench [RANKS [UNITS_PER_CELL]]. Under mpirun, the ranks are the processes
+// that it started, and RANKS is ignored; otherwise they are threads of this process. A cell of the sensitivity study is
+// one error at one pose.
 
 namespace {
 
@@ -33,7 +35,7 @@ double thread_seconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// 1000 numbers around zero, as a response may have.
+/// Normal numbers with mean 0, which serve as the values of a response in one unit.
 std::vector<double> numbers() {
   std::vector<double> values(Plan::kUnitSamples);
   fill_uniforms({1, Purpose::error_samples, FactorIndex(0), PoseIndex(0)}, SampleIndex(0), values);
@@ -47,7 +49,8 @@ SolveCounts counts() {
   return solves;
 }
 
-/// One run with empty solves, on every rank; rank 0 prints what it took.
+/// Runs a study on all ranks, in which every work unit has the output `unit` without a solve. add: merges the output of
+/// a unit. state: writes or reads an output as a message. Rank 0 prints the rates.
 template <class Output, class Add, class State>
 void measure(const char* kind, const Plan& plan, Output unit, Team& team, const Add& add, const State& state) {
   RunOptions options;
@@ -97,7 +100,7 @@ void measure_both(Team& team, std::size_t units_per_cell) {
           one.state(archive, 0);
         });
   }
-  // As many units at few poses: what is done once for a pose does not count in long studies.
+  // Many units at few poses, because in a long study the work that is done once for each pose is negligible.
   study.analysis.kind = &kMonteCarloStudy;
   study.analysis.samples *= kUnitsPerPose;
   const Plan plan(study, bench::every(kEveryPose, poses));

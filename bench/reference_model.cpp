@@ -42,7 +42,8 @@ class ReferenceEvaluator final : public Evaluator {
   }
 
  private:
-  /// Returns the frame that has the error.
+  /// Sets the value (SI) of an error. Returns the index, among the frames of all limbs, of the frame that has the
+  /// error.
   std::size_t set(std::size_t factor, double value) {
     const chain::ErrorTerm& term = model_->terms[factor].front();
     const std::size_t frame = first_frame_[term.limb] + term.frame;
@@ -55,7 +56,8 @@ class ReferenceEvaluator final : public Evaluator {
     frames_[frame] = frame_with_error(model_->chain.limbs[limb], frame - first_frame_[limb], errors_[frame]);
   }
 
-  /// Eqs. 45-50, into one column of rows that are `stride` long.
+  /// Computes the responses of one sample from the residual delta_mu_ (Du et al. 2022, Eqs. 45-50). column: begins with
+  /// the first response of the sample; the others follow at distances of `stride` numbers.
   void judge(std::span<double> column, std::size_t stride) const {
     double angular = 0.0, linear = 0.0, largest = 0.0;
     const std::size_t pairs = delta_mu_.size() / 6;
@@ -72,8 +74,8 @@ class ReferenceEvaluator final : public Evaluator {
 
   const chain::DeformationModel* model_;
   chain::DeformationSolver solver_;
-  std::vector<std::size_t> first_frame_;  ///< per limb
-  std::vector<std::size_t> limb_of_;      ///< per frame
+  std::vector<std::size_t> first_frame_;  ///< [limbs] index of each limb's first frame among the frames of all limbs
+  std::vector<std::size_t> limb_of_;      ///< [frames of all limbs] index of the limb to which each frame belongs
   std::vector<chain::FrameError<double>> errors_;
   std::vector<lie::Transform<double>> frames_;
   std::vector<double> displacements_;

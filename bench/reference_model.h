@@ -5,10 +5,11 @@
 
 namespace poesy::bench {
 
-/// The published 2UPR-RPU solved by chain::DeformationSolver: plain double arithmetic, one sample at a time.
+/// The mechanism 2upr-rpu with the published metric, solved by chain::DeformationSolver in plain double arithmetic, one
+/// sample at a time.
 class ReferenceModel final : public Model {
  public:
-  /// The model must outlive this one.
+  /// model: the mechanism 2upr-rpu with its published geometry; must outlive this object.
   explicit ReferenceModel(const Model& model);
 
   const ModelDescription& description() const override { return model_->description(); }
@@ -19,7 +20,7 @@ class ReferenceModel final : public Model {
     return model_->joint_displacements(pose);
   }
   double condition(std::span<const double> pose) const override { return model_->condition(pose); }
-  /// Details are not given.
+  /// The evaluator does not write OutcomeBlock::details.
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override;
 
  private:

@@ -24,7 +24,8 @@ using MakeStudy = std::function<Study(std::size_t poses, std::size_t samples)>;
 Study platform_study(std::size_t poses, std::size_t samples) { return bench::platform_study(poses, samples); }
 Study first_order_study(std::size_t poses, std::size_t samples) { return bench::platform_study(poses, samples, 1); }
 
-/// One thread solving units spread over a study, sampling included.
+/// Measures the drawing and solving of work units (WorkUnit) from all parts of a study. isa: instruction set, or
+/// "scalar" for ReferenceModel.
 void units(benchmark::State& state, const MakeStudy& make, SolverOptions::Method method, const std::string& isa) {
   Study study = make(bench::kPublishedPoses, bench::kPublishedSamples);
   study.solver.method = method;
@@ -40,10 +41,10 @@ void units(benchmark::State& state, const MakeStudy& make, SolverOptions::Method
   report(state, counts);
 }
 
-/// All errors varied at once, in blocks of 1000 samples at pose after pose, the same on every thread. Only the solver
-/// is timed.
+/// Measures solves in which all errors vary at once, in blocks of 1000 samples, each block at another pose. Every
+/// thread solves the same blocks. The time of drawing is not included. scale: factor of the study's errors.
 void all_errors(benchmark::State& state, const MakeStudy& make, const std::string& isa, double scale) {
-  constexpr std::size_t kBlocks = 8;  // as many as there are different samples
+  constexpr std::size_t kBlocks = 8;  // number of different blocks of samples, used in turn
   constexpr std::size_t kCount = 1000;
   const Study study = make(bench::kPublishedPoses, kCount);
   const auto model = build_model(study.mechanism);
@@ -63,7 +64,7 @@ void all_errors(benchmark::State& state, const MakeStudy& make, const std::strin
   SolveCounts counts;
   std::size_t n = 0;
   for (auto _ : state) {
-    // A stride prime to the number of poses: a few blocks are spread over the workspace.
+    // The stride 31 and the number of poses have no common factor, so even a few blocks are spread over the workspace.
     evaluator->evaluate({poses[PoseIndex(31 * n % poses.size())], zeros, varied, blocks[n % kBlocks], kCount},
                         {responses, status, iterations, {}});
     for (std::size_t b = 0; b < kCount; ++b) counts.add(status[b], iterations[b]);
@@ -80,7 +81,7 @@ auto add(const std::string& name, Case run) {
       ->Unit(benchmark::kMillisecond);
 }
 
-/// A metric's cases on one instruction set: units by each method, and all errors at two sizes.
+/// Adds the cases of one metric on one instruction set: work units by each method, and all errors at two sizes.
 void add_metric(const std::string& metric, const MakeStudy& make, const std::string& isa) {
   using Method = SolverOptions::Method;
   const auto add_units = [&](const std::string& method, Method which) {
@@ -90,7 +91,7 @@ void add_metric(const std::string& metric, const MakeStudy& make, const std::str
   };
   add_units("gauss-newton", Method::gauss_newton);
   add_units("newton", Method::newton);
-  // Large errors make hard solves: fewer blocks of them.
+  // Solves with large errors take longer, so these cases solve fewer blocks.
   add(metric + "/all_errors/1_mm_1_deg/" + isa, [=](benchmark::State& state) { all_errors(state, make, isa, 1.0); })
       ->ThreadRange(1, 2)
       ->Iterations(isa == "plain" ? 8 : 40);

@@ -22,7 +22,8 @@ std::vector<double> uniforms(std::size_t rows, std::size_t pose) {
   return draws;
 }
 
-/// Seconds for each of so many things, printed by the library with its own unit prefix (n for nano).
+/// Reports the time (s) of an iteration of the benchmark divided by the number of things that it processes. Google
+/// Benchmark prints it with a unit prefix, such as n for nano.
 void report(benchmark::State& state, std::size_t things) {
   state.counters["time_for_each"] = benchmark::Counter(
       static_cast<double>(things), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
@@ -30,14 +31,14 @@ void report(benchmark::State& state, std::size_t things) {
 
 const std::vector<std::uint8_t> kAllCount(kSamples, 1);
 
-/// For each error and sample.
+/// Measures the time in which EffectBins finds the bin of a sample, for each error and sample.
 void FindBins(benchmark::State& state) {
   const std::vector<double> draws = uniforms(kErrors, 0);
   for (auto _ : state) benchmark::DoNotOptimize(poesy::EffectBins(draws, kErrors));
   report(state, kErrors * kSamples);
 }
 
-/// For each response, error and sample.
+/// Measures the time of MainEffectSums::add() for each response, error and sample.
 void AddToBins(benchmark::State& state) {
   const auto responses = static_cast<std::size_t>(state.range(0));
   const poesy::EffectBins bins(uniforms(kErrors, 0), kErrors);
@@ -50,7 +51,7 @@ void AddToBins(benchmark::State& state) {
   report(state, responses * kErrors * kSamples);
 }
 
-/// For each response and error.
+/// Measures the time of MainEffectSums::merge() for each response and error.
 void MergeBins(benchmark::State& state) {
   const auto responses = static_cast<std::size_t>(state.range(0));
   poesy::MainEffectSums sums(kErrors, responses);
@@ -63,7 +64,7 @@ void MergeBins(benchmark::State& state) {
   report(state, responses * kErrors);
 }
 
-/// For each index.
+/// Measures the time of MainEffectSums::variance() for each error of one response.
 void VarianceOfBins(benchmark::State& state) {
   poesy::MainEffectSums sums(kErrors, 1);
   sums.add(poesy::EffectBins(uniforms(kErrors, 0), kErrors), uniforms(1, 1), kAllCount);
@@ -74,7 +75,7 @@ void VarianceOfBins(benchmark::State& state) {
   report(state, kErrors);
 }
 
-/// For each response of a machine at a pose.
+/// Measures the time of MachineBlock::add_pose() for each response and machine.
 void AddMachinesAtPose(benchmark::State& state) {
   constexpr std::size_t kResponses = 4;
   poesy::MachineBlock block(std::vector<poesy::ValueLimit>(kResponses, 0.9), kSamples);
@@ -86,7 +87,7 @@ void AddMachinesAtPose(benchmark::State& state) {
   report(state, kResponses * kSamples);
 }
 
-/// For each error of a machine, one machine in so many a reject.
+/// Measures the time of ScoreSums::add() for each error and machine. One of every state.range(0) machines is a reject.
 void AddScores(benchmark::State& state) {
   const auto one_in = static_cast<std::size_t>(state.range(0));
   const poesy::NormalScore normal{1.0, std::numeric_limits<double>::infinity()};

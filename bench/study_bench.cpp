@@ -10,14 +10,14 @@ namespace {
 
 using namespace poesy;
 
-/// A solver of the published study: by which metric, how, and on which of the poses.
+/// One case of the benchmark: how the published study is solved, and at which of its poses.
 struct Solver {
   std::string name;
   bool by_platform;
-  std::size_t fidelity;  ///< by the platform's metric
+  std::size_t fidelity;  ///< index in the fidelities of the platform's metric; used only if by_platform is true
   SolverOptions::Method method;
   std::string isa;
-  std::size_t step;  ///< slow solvers see every step-th pose only
+  std::size_t step;  ///< only every step-th pose is solved; above 1 for slow solvers
 };
 
 Study study_of(const Solver& solver) {
@@ -28,7 +28,7 @@ Study study_of(const Solver& solver) {
   return study;
 }
 
-/// The published study on a number of threads.
+/// Measures a run of the published study on state.range(0) threads.
 void run(benchmark::State& state, const Solver& solver) {
   const Study study = study_of(solver);
   std::unique_ptr<Model> model = build_model(study.mechanism);
@@ -61,7 +61,7 @@ void add(const Solver& solver) {
       ->Unit(benchmark::kSecond);
 }
 
-/// Cases of about the same length.
+/// Adds the cases. Their steps are chosen so that all cases take about the same time.
 void add_all() {
   using Method = SolverOptions::Method;
   add({"reference", false, 0, Method::gauss_newton, "scalar", 40});

@@ -13,10 +13,11 @@ namespace {
 using namespace poesy;
 
 constexpr std::size_t kPoses = 20;
-constexpr std::size_t kBlocks = 2;  // what a core's second cache holds, as after drawing
+// Number of blocks of samples; the second cache of a core holds them, as it holds samples just drawn.
+constexpr std::size_t kBlocks = 2;
 constexpr std::size_t kSamples = 1000;
 
-/// Every sample by close_limbs.
+/// Solves every sample by close_limbs(), the scalar reference.
 class ReferenceEvaluator final : public Evaluator {
  public:
   void evaluate(const SampleBlock& samples, const OutcomeBlock& outcomes) override {
@@ -38,10 +39,10 @@ class ReferenceEvaluator final : public Evaluator {
   }
 };
 
-/// A set of factors, and how its samples are solved.
+/// One case of the benchmark: the errors that vary, and how their samples are solved.
 struct Case {
   std::size_t fidelity;
-  std::string isa;  ///< "scalar" for the reference
+  std::string isa;  ///< instruction set, or "scalar" for ReferenceEvaluator
   std::vector<FactorIndex> varied;
 };
 
@@ -53,7 +54,8 @@ std::unique_ptr<Evaluator> evaluator_of(const Case& which, const ModelDescriptio
   return bench::evaluator_with(which.isa, *model, {});
 }
 
-/// Blocks of normal errors of 0.1 mm and 0.1 mrad at pose after pose.
+/// Measures solves of blocks of samples with normal errors of 0.1 mm and 0.1 mrad (standard deviations), each block at
+/// another pose.
 void solves(benchmark::State& state, const Case& which) {
   const ModelDescription& description = find(registry(), "3-prs")->description;
   const std::unique_ptr<Evaluator> evaluator = evaluator_of(which, description);

@@ -13,7 +13,7 @@ namespace {
 
 using namespace poesy;
 
-/// A CSV file being written.
+/// A CSV file, open for writing.
 class Table {
  public:
   Table(const std::filesystem::path& path, const char* header) : file_(std::fopen(path.c_str(), "w")) {
@@ -41,7 +41,8 @@ void write_background(const std::filesystem::path& path, const Study& study) {
   }
 }
 
-/// The first samples of cells spread over the published study, and what Gauss-Newton makes of them here.
+/// Writes samples of the published study (samples.csv), and poesy's solutions of them (answers.csv). cells: number of
+/// cells (one error at one pose) from which samples are taken, spread over the study.
 void write_samples(const std::filesystem::path& folder, const Study& study, std::size_t cells) {
   const auto model = build_model(study.mechanism);
   const Plan plan(study, select_poses(study.poses, *model).poses);
@@ -70,8 +71,8 @@ void write_samples(const std::filesystem::path& folder, const Study& study, std:
   }
 }
 
-/// What solver_bench's all_errors solves at 0.1 mm and 0.1 deg, as plain numbers: the poses [158 x 3], and blocks
-/// [8 x 71 x 1000], of which the n-th is for pose 31 n mod 158.
+/// Writes what all_errors() of solver_bench solves with errors of 0.1 mm and 0.1 deg, as doubles in SI: all poses [158
+/// x 3] and blocks of samples [8 x 71 x 1000]. The n-th solve is at pose 31 n mod 158, with block n mod 8.
 void write_all_errors(const std::filesystem::path& folder) {
   const Study study = bench::platform_study(bench::kPublishedPoses, bench::kPublishedSamples);
   const PoseSet poses = select_poses(study.poses, *build_model(study.mechanism)).poses;
@@ -87,8 +88,9 @@ void write_all_errors(const std::filesystem::path& folder) {
 
 }  // namespace
 
-/// published_samples FOLDER CELLS SAMPLES: part of the published study as CSV, for solvers written in other languages.
-/// published_samples FOLDER: the blocks of all errors that solver_bench solves, for the module for Python.
+/// published_samples FOLDER CELLS SAMPLES writes part of the published study as CSV files, for solvers in other
+/// languages. published_samples FOLDER writes the blocks of samples that solver_bench solves with all errors, for
+/// bench/python_solver.py.
 int main(int argc, char** argv) {
   if (argc != 4 && argc != 2) {
     fmt::print(stderr, "usage: published_samples FOLDER [CELLS SAMPLES (of each cell, at most 1000)]\n");

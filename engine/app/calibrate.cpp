@@ -51,7 +51,7 @@ struct CalibrateOptions {
   std::size_t threads = 0;
 };
 
-/// Reads the file of poses that a selection names, because reading the study for a calibration did not open it.
+/// Reads the file of poses that a selection names, because read_study() for a calibration does not open this file.
 void open_poses(PoseSelection& selection, const std::string& study_path, const ModelDescription& model) {
   if (selection.select != PoseSelection::Select::file || selection.file.empty()) return;
   const std::string path = (std::filesystem::path(study_path).parent_path() / selection.file).string();
@@ -117,7 +117,7 @@ std::vector<GeometryParameter> names_in_expressions(const Study& study) {
   return list;
 }
 
-/// The names in an expression. A name directly after a number is a unit and left out.
+/// The names in an expression. A name directly after a number is a unit, and is left out.
 std::vector<std::string> names_in(const std::string& text) {
   const auto is_letter = [](char c) { return c == '_' || std::isalpha(static_cast<unsigned char>(c)) != 0; };
   const auto is_part = [&](char c) { return is_letter(c) || std::isdigit(static_cast<unsigned char>(c)) != 0; };
@@ -133,8 +133,8 @@ std::vector<std::string> names_in(const std::string& text) {
   return list;
 }
 
-/// Throws InputError if the expression of a number for the controller names an error of the mechanism that is not
-/// fitted: its value is not known.
+/// Throws InputError if the expression of a number for the controller uses an error of the mechanism that is not fitted
+/// on its own, because the value of such an error is not known.
 void check_names(const ControllerNumber& number, const std::vector<GeometryParameter>& parameters, const Study& study) {
   for (const std::string& name : names_in(number.text)) {
     const auto factor = study.model().find_factor(name);

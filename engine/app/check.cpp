@@ -24,8 +24,8 @@
 namespace poesy::app {
 namespace {
 
-/// A line on the speeds that a trajectory requires of the mechanism's coordinates; empty if the poses are no
-/// trajectory.
+/// A line on a trajectory: its number of poses, its times, and the range of each coordinate; empty if the poses are not
+/// on a trajectory.
 std::string trajectory_line(const SelectedPoses& poses, const ModelDescription& model) {
   if (poses.time.empty()) return {};
   std::string text = fmt::format("# trajectory: {} poses from {:.6g} s to {:.6g} s", poses.poses.size(),
@@ -50,8 +50,8 @@ double measured_seconds(const WorkOutlook& work, double longest) {
   const Clock::time_point start = Clock::now();
   double done = 0.0;
   for (std::size_t n = 0; n < kPieces && (n == 0 || seconds_since(start) < longest); ++n) {
-    // The first piece is in the middle of the work. Each step is the golden ratio, so any number of pieces is spread
-    // evenly.
+    // The first piece is in the middle of the work. Each further piece is a step of the golden ratio later (modulo 1),
+    // which spreads any number of pieces evenly.
     const double at = 0.5 + static_cast<double>(n) * 0.6180339887498949;
     done += work.do_piece(at - std::floor(at));
   }
@@ -80,7 +80,8 @@ std::string time_text(const ExpectedTime& time) {
   return time.least == time.most ? most : "at least about " + readable_duration(time.least) + ", at most " + most;
 }
 
-/// The peak memory of this process, bytes. It includes the model, the poses and a solver, as the peak of a run does.
+/// The peak memory of this process so far, bytes. It includes the model, the poses and a solver, as the peak of a run
+/// does.
 double own_peak() {
   constexpr double kUnit = 1024.0;  // unit of ru_maxrss, bytes
   struct rusage usage {};

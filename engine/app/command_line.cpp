@@ -21,7 +21,7 @@ std::string shown_name(const CLI::Option& option) {
 bool is_option(const std::string& word) { return word.size() > 1 && word.front() == '-'; }
 
 /// A suggestion, "did you mean 'run'? ", if a known word is similar to this word or begins with it; otherwise empty. An
-/// option of one letter gets no suggestion, because all other letters are equally similar.
+/// option of one letter gets no suggestion, because all other options of one letter are equally similar.
 std::string nearest_text(const std::string& word, const std::vector<std::string>& known) {
   if (is_option(word) && word.size() == 2) return {};
   const std::vector<std::string_view> views(known.begin(), known.end());
@@ -36,8 +36,8 @@ std::string unknown_option(const std::string& word, const CLI::App& command) {
                      nearest_text(name, option_names(command)), see_help(command));
 }
 
-// Each of these functions looks for one sort of mistake. It returns a message if the user made this mistake, otherwise
-// none.
+// Each of the following functions looks for one sort of mistake in the command line. It returns a message if the user
+// made this mistake, otherwise none.
 
 /// The message that a required argument is missing.
 std::optional<std::string> missing(const CLI::App& command) {

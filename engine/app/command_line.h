@@ -12,9 +12,10 @@
 
 namespace poesy::app {
 
-/// Reads a text that has only digits; none for any other text.
+/// The whole number in a text that has only digits; none for any other text.
 std::optional<std::uint64_t> whole_number(std::string_view text);
-/// Reads a whole number from `least` to `most`. For any other text, throws InputError with the option and the bounds.
+/// Reads a whole number from `least` to `most`. For any other text, throws InputError with the name of the option and
+/// the bounds.
 std::uint64_t parse_whole_number(const std::string& text, const std::string& option, std::uint64_t least,
                                  std::uint64_t most);
 
@@ -109,7 +110,7 @@ std::string title(const CLI::App& command);
 /// The synopsis of a command: "poesy evaluate STUDY.toml --poses P.csv --errors E.csv [options]".
 std::string synopsis(const CLI::App& command);
 
-/// Makes the help of the program and of its commands, in as many columns as stdout has.
+/// Makes the formatter for the help of the program and of its commands. It wraps help at the width of stdout.
 std::shared_ptr<CLI::FormatterBase> help_formatter();
 
 /// The message about a command line that CLI11 refused: "PROBLEM; REMEDY". It suggests the most similar command or
@@ -120,8 +121,8 @@ std::string command_line_problem(const Command& program, const CLI::ParseError& 
 std::string unknown_command(const std::string& word, const Command& program);
 
 /// The message that a value in the command line is impossible; none if all values are possible. A value is impossible
-/// if it is empty, as in a script with a variable that is not set, or if it is the name of an option. Precondition:
-/// CLI11 accepted the command line.
+/// if it is empty, which happens in a script with a variable that is not set, or if it is the name of an option.
+/// Precondition: CLI11 accepted the command line.
 std::optional<std::string> impossible_value(const Command& program);
 
 /// Returns true if the command line begins with a command that does not exist.

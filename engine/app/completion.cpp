@@ -19,7 +19,7 @@ namespace {
 /// The shells for which there is a completion script.
 constexpr std::array<std::string_view, 2> kShells{"bash", "zsh"};
 
-/// How the script of each shell completes a value.
+/// What the script for each shell offers to complete a value, in the notation of the script.
 struct Offer {
   std::string bash = "nothing";
   std::string zsh = " ";
@@ -53,7 +53,7 @@ std::vector<std::string_view> words_for(const std::string& value, const Command&
   return words;
 }
 
-/// How a script completes the value of an option. The word for the value in help ("DIR") tells what kind of value it
+/// How the scripts complete the value of an option. The word for the value in help ("DIR") tells what kind of value it
 /// is.
 Offer offer_for(const CLI::Option& option, const Command& program) {
   const std::string value = value_of(option);

@@ -41,9 +41,9 @@ constexpr std::array<std::string_view, 3> kForms{"text", "json", "csv"};
 
 struct EvaluateOptions {
   std::string study;
-  std::string poses;  ///< file of poses; empty: the study selects the poses
+  std::string poses;  ///< path of the file of poses; empty: the study selects the poses
   std::string errors;
-  /// Form of the table of the mechanism's frames that is printed, one of kForms; empty: the command solves errors
+  /// Form in which the table of the mechanism's frames is printed, one of kForms; empty: the command solves errors
   /// instead.
   std::string frames;
   std::string result;
@@ -116,7 +116,7 @@ int print_frames(const EvaluateOptions& options, const Model& model, const PoseS
   return kDone;
 }
 
-/// Throws InputError if there are more outcomes than a result may have (kMostCells).
+/// Throws InputError if there would be more solves than a result may have (kMostCells).
 void check_size(const EvaluateOptions& options, const PoseSet& poses, const ErrorTable& errors) {
   if (options.paired) return;  // each row is solved at one pose, so there are no more solves than rows
   const double solves = static_cast<double>(poses.size()) * static_cast<double>(errors.rows);
@@ -127,7 +127,7 @@ void check_size(const EvaluateOptions& options, const PoseSet& poses, const Erro
                    "give fewer rows or poses, or --paired for row by row");
 }
 
-/// The input of an evaluation. The object refers to study, model, poses and errors, which must outlive it.
+/// The input of an evaluation. The objects to which it refers must outlive it.
 struct Evaluated {
   const Study& study;
   const Model& model;

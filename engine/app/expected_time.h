@@ -8,13 +8,14 @@ namespace poesy::app {
 
 /// The expected duration of a run on this machine, s.
 struct ExpectedTime {
-  /// Duration if adaptive samples end as early as possible; equal to `most` if the number of samples is fixed.
+  /// Duration if adaptive sampling ends as early as possible; equal to `most` if the number of samples is fixed.
   double least;
   double most;  ///< duration with the largest number of samples
 };
 
-/// The expected duration, from measuring pieces of the study's work on this machine, at least one piece of each sort of
-/// work. seconds: about how long pieces of each sort of work are measured. Defined in check.cpp.
+/// The expected duration of a run. To find it, the function does some pieces of each sort of the study's work, at least
+/// one of each, and measures their time. threads: number of threads of the run. seconds: time (s) after which no more
+/// pieces of a sort are begun. Defined in check.cpp.
 ExpectedTime expected_time(const Outlook& expected, std::size_t threads, double seconds);
 
 /// The duration above which the program asks before it starts a run, s.

@@ -38,8 +38,8 @@ struct ExportOptions {
   std::string size = "85mm";
 };
 
-constexpr double kNarrowestTable = 40.0;  ///< width of a table in mm
-constexpr double kWidestTable = 400.0;    ///< width of a table in mm
+constexpr double kNarrowestTable = 40.0;  ///< smallest width of a table, mm
+constexpr double kWidestTable = 400.0;    ///< largest width of a table, mm
 
 /// Reads the width of tables, and returns it in mm.
 double width_of(const std::string& size) {
@@ -52,7 +52,7 @@ double width_of(const std::string& size) {
                    fmt::format("give its width, {} to {} mm, e.g. 85mm or 170mm", kNarrowestTable, kWidestTable));
 }
 
-/// Adds to tables of a result that was solved to first order a note on this, as far as they do not say it.
+/// If the result was solved to first order, adds a note on this to each table that has no such note.
 void add_first_order_notes(const StoredResult& result, std::vector<Table>& tables) {
   if (!is_first_order(result)) return;
   const auto says_it = [](const std::string& note) { return note.find(kFirstOrder) != std::string::npos; };
@@ -74,14 +74,15 @@ std::vector<Table> printed_tables(const ExportOptions& options, StoredResult& re
   return tables;
 }
 
-/// The tables to open first, the most important first, of those kinds of study that write many. The response that ranks
-/// follows a name that ends in '_'.
+/// Tables that a user should open first if there are many, the most important first. A name that ends in '_' is
+/// completed by the response that ranks errors by default.
 constexpr std::array<std::string_view, 8> kFirstTables{"yield",       "global", "sobol_",  "mean_square_share",
                                                        "tolerances_", "limits", "overall", "index_change"};
 constexpr std::size_t kManyFiles = 20;  ///< with more files, the program names those to open first
 constexpr std::size_t kFirstFiles = 3;
 
-/// "309 files; open these first: t/global.csv, t/tolerances_gap.csv, t/index_change.csv"
+/// The number of files, and which to open first: "309 files; open these first: t/global.csv, t/tolerances_gap.csv,
+/// t/index_change.csv"
 std::string first_files_text(const StoredResult& result, const std::vector<std::string>& files) {
   std::vector<std::string> first;
   for (const std::string_view table : kFirstTables) {

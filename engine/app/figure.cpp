@@ -48,7 +48,8 @@ bool may_be_replaced(const std::string& path) {
 
 constexpr const char* kPythonVariable = "POESY_PYTHON";
 
-/// The Python that draws: that of the option, of the environment, or python3.
+/// The Python that draws: the one that the option names, otherwise the one in the variable POESY_PYTHON, otherwise
+/// python3.
 std::string python_of(const FigureOptions& options) {
   if (!options.python.empty()) return options.python;
   const char* const named = std::getenv(kPythonVariable);

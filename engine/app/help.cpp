@@ -74,8 +74,8 @@ std::string entries(const std::string& title, std::span<const Entry> list) {
   return text;
 }
 
-/// Formats help in the groups of CLI11, wrapped to the width of the terminal. The manual page is made from the help of
-/// all commands by help2man.
+/// Formats help with the groups of options and commands that CLI11 knows, wrapped to the width of the terminal. The
+/// manual page is made from the help of all commands by help2man.
 class HelpFormatter : public CLI::Formatter {
  public:
   HelpFormatter() { label("Positionals", "Arguments"); }

@@ -14,13 +14,13 @@ namespace poesy::app {
 
 double seconds_of_long_run(const Study& study, const Model& model, const PoseSet& poses, std::size_t threads,
                            std::size_t runs) {
-  // A run with fewer draws is shorter than kLongRun: nearly every solve belongs to a draw, and a solve takes far less
-  // than 8 ms, with which as many solves on one thread would take kLongRun.
+  // A run with fewer draws takes less than kLongRun. It makes about one solve for each draw, and with kFewDraws solves
+  // on one thread, each solve would have to take more than 8 ms. Solves are much faster.
   constexpr double kFewDraws = 1e7;
-  // The first estimate of the duration is rough, because it is measured on single pieces of work. A run whose first
-  // estimate is below this limit is surely shorter than kLongRun.
+  // The first estimate of the duration is rough, because it is measured on single pieces of work. If it is below this
+  // limit, the run is surely shorter than kLongRun.
   constexpr double kShort = kLongRun / 4.0;
-  constexpr double kTrial = 0.25;  // s, duration of the second, more exact measurement
+  constexpr double kTrial = 0.25;  // s, time for each sort of work in the second, more exact measurement
   const double draws = static_cast<double>(runs) * static_cast<double>(study.analysis.samples) *
                        static_cast<double>(poses.size()) * static_cast<double>(study.analysis.factors.size());
   if (draws < kFewDraws) return 0.0;

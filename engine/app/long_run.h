@@ -16,8 +16,8 @@ namespace poesy::app {
 double seconds_of_long_run(const Study& study, const Model& model, const PoseSet& poses, std::size_t threads,
                            std::size_t runs = 1);
 
-/// If the duration (s) exceeds kLongRun, asks on a terminal whether to start the run. Returns if the answer is yes or
-/// after an interrupt (`stop`). Otherwise throws InputError with the path of the study.
+/// If the duration `seconds` exceeds kLongRun, asks on the terminal whether to start the run. Returns if the answer is
+/// yes, and after an interrupt (`stop`). Otherwise throws InputError with the path of the study.
 void ask_about(double seconds, const std::string& study_path, std::size_t threads, const std::atomic<bool>& stop);
 
 }  // namespace poesy::app

@@ -121,6 +121,6 @@ int flushed(int code) {
 int main(int argc, char** argv) {
   poesy::save_address_space();
   poesy::return_large_lists();
-  std::signal(SIGXFSZ, SIG_IGN);  // makes a write beyond the limit on file sizes fail, as on a full disk
+  std::signal(SIGXFSZ, SIG_IGN);  // lets a write beyond the limit on file sizes fail, as on a full disk
   return poesy::app::flushed(poesy::app::exit_code_of([=] { return poesy::app::parse_and_run(argc, argv); }));
 }

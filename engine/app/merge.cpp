@@ -41,7 +41,7 @@ std::size_t most(const std::vector<StoredShard>& shards, std::size_t RunFacts::*
   return largest;
 }
 
-/// The number of bytes of all states. A state is the content of the sums after one part (stage) of a study.
+/// The size of all states together, bytes. A state has the sums that one stage of a study accumulated.
 std::size_t state_bytes(std::span<const Bytes> states) {
   std::size_t sum = 0;
   for (const Bytes& state : states) sum += state.size();
@@ -64,7 +64,7 @@ std::size_t peak_of(std::span<const Bytes> states, const MemoryOutlook& run) {
   return state_bytes(states) + run.accumulators + run.result;
 }
 
-/// Merges the shards and writes the result. needed: receives, as text, the memory that merging needs, as soon as this
+/// Merges the shards and writes the result. needed: is set to the memory that merging needs, as text, as soon as this
 /// is known; if memory runs out, the caller reports it.
 int merge(const MergeOptions& options, const std::string& path, std::string& needed) {
   std::vector<StoredShard> shards;

@@ -24,8 +24,8 @@ namespace {
 /// The largest size of a mechanism file, bytes.
 constexpr std::size_t kMostBytes = 1 << 20;
 
-/// The mechanism of this name (upper and lower case do not matter), or of the file at this path. Throws InputError with
-/// the known names if there is none.
+/// The built-in mechanism of this name (upper and lower case do not matter), or the mechanism of the file at this path.
+/// Throws InputError with the known names if there is none.
 CatalogEntry find_model(const std::string& name) {
   if (const CatalogEntry* entry = find(registry(), name)) return *entry;
   if (name.find_first_of("./") != std::string::npos) {

@@ -51,9 +51,9 @@ bool is_first_process() { return find_launch().value_or(Launch()).rank == 0; }
 
 namespace {
 
-/// A long message is sent in pieces of this size. Because of this, a rank without memory for the whole message can
-/// still receive the pieces and drop them; otherwise the sender would wait forever. The tag of a piece is the number of
-/// pieces that follow, but at most kMostTag, which every MPI supports as a tag.
+/// A long message is sent in pieces of this size. If a rank has no memory for the whole message, it can still receive
+/// the pieces and drop them; otherwise the sender would wait forever. The tag of a piece is the number of pieces that
+/// follow it, but at most kMostTag, because every MPI supports tags up to this number.
 constexpr std::size_t kPieceBytes = std::size_t{4} << 20U;
 constexpr std::size_t kMostTag = 32767;
 
@@ -156,7 +156,8 @@ class MpiRanks : public LaunchedRanks {
     bool lost = false;  ///< true if there was not enough memory for the message
   };
 
-  /// The memory for the next piece of a message. Pieces of a message that is lost go into a buffer that is never read.
+  /// The memory for the next piece of a message. If there is no memory for the message, its pieces go into a buffer
+  /// that is never read. count: bytes of the piece. following: number of pieces after it.
   std::byte* room_in(Receiving& receiving, std::size_t count, std::size_t following) {
     const std::size_t before = receiving.bytes.size();
     try {

@@ -15,8 +15,8 @@ struct Launch {
 };
 
 /// Finds out from environment variables how this process was launched. mpirun of Open MPI sets OMPI_COMM_WORLD_*. srun
-/// --mpi=pmix sets PMIX_RANK, in addition to the SLURM_* of every process of a job. Launchers of other MPIs set PMI_*.
-/// None if there is no launcher.
+/// --mpi=pmix sets PMIX_RANK, and Slurm sets SLURM_* for every process of a job. Launchers of other MPIs set PMI_*.
+/// None if these variables do not tell rank and size.
 std::optional<Launch> find_launch();
 
 /// Returns true if this process is the first one that a launcher started, or the only one.
@@ -31,8 +31,8 @@ class LaunchedRanks : public Ranks {
   [[noreturn]] virtual void abort(int exit_code) = 0;
 };
 
-/// Connects this process to the other ranks. The destructor finalises MPI, for which it waits for all ranks. Throws
-/// InputError if this program was built without MPI, or for another MPI than that of the launcher.
+/// Connects this process to the other ranks. The destructor of the returned object waits for all ranks and ends MPI.
+/// Throws InputError if this program was built without MPI, or for another MPI than that of the launcher.
 std::unique_ptr<LaunchedRanks> connect_ranks(const Launch& launch);
 
 }  // namespace poesy::app

@@ -20,7 +20,8 @@ namespace {
 constexpr std::string_view kPdfMark =
     "% poesy report\n";  ///< comment at the end of the PDF by which poesy recognises it
 constexpr const char* kOtherWay = "write the report as REPORT.html, open it in a browser and print it to a PDF there";
-/// A shell script that prints the page report.html in a folder. Its exit code is 127 if PATH has no browser.
+/// A shell script that prints report.html in the folder $POESY_PRINTED to report.pdf there. Its exit code is 127 if
+/// PATH has no browser.
 constexpr const char* kPrint = R"sh(
   cd "$POESY_PRINTED" && exec 2>&1 </dev/null || exit 1
   [ "$(id -u)" = 0 ] && sandbox=--no-sandbox  # Chromium refuses to have one as root

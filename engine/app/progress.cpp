@@ -19,7 +19,8 @@
 namespace poesy::app {
 namespace {
 
-/// A duration in two units: "2 h 10 min". The smaller unit is left out if its count is zero.
+/// A duration in two units: "2 h 10 min". The small unit is left out if its count is zero. count: duration in the small
+/// unit. per_large: number of small units in a large one.
 std::string two_parts(double count, double per_large, const char* large, const char* small) {
   const double whole = std::floor(count / per_large);
   const double rest = count - whole * per_large;
@@ -218,7 +219,7 @@ void ProgressPrinter::begin_design(std::size_t design, std::size_t designs) {
 void ProgressPrinter::operator()(const Progress& progress) {
   const RecentRate::Clock::time_point now = RecentRate::Clock::now();
   const std::uint64_t done = progress.solves - progress.before;
-  if (done < done_) {  // a new part (stage) of the study began, and its solves are counted from 0
+  if (done < done_) {  // a new stage of the study began, whose solves are counted from 0
     rate_ = RecentRate(now);
     ++stage_;
   }

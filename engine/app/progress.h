@@ -41,7 +41,8 @@ class RecentRate {
     std::uint64_t done;
   };
 
-  /// Amounts of work at times in the last 15 seconds; the first one is at the beginning of this time or just before it.
+  /// Amounts of work at some times in the last 15 seconds. The first mark is at the beginning of this period, or the
+  /// last one before it.
   std::deque<Mark> marks_;
   Mark latest_;
 };
@@ -50,18 +51,18 @@ class RecentRate {
 struct ProgressFacts {
   Progress progress;
   double rate = 0.0;        ///< present rate, samples per second; 0 as long as it is not known
-  std::size_t stage = 1;    ///< number of the present stage, from 1; its size is known when it begins
+  std::size_t stage = 1;    ///< number of the present stage of the study, from 1
   std::size_t design = 0;   ///< number of the present design of a sweep, from 1; 0: the run is not a sweep
   std::size_t designs = 0;  ///< number of designs of the sweep; 0: the run is not a sweep
 };
 
 /// A line of progress as text: "43.2 % done, 7.21 M samples/s, 12 not converged (0.0012 %), 1 min 20 s left". In a
-/// sweep it begins with "design 4 of 10: ", the percentage is that of this design, and the time left is that of all
-/// designs, as if each had as many solves as this one.
+/// sweep the line begins with "design 4 of 10: ". The percentage is then that of this design, and the time left is that
+/// of all designs, as if each had as many solves as this one.
 std::string plain_line(const ProgressFacts& facts);
 
-/// A line of progress with a bar, in at most `width` columns of one byte each. If there is too little room, the bar
-/// becomes shorter, and then parts of the line are left out. The percentage stays longest.
+/// A line of progress with a bar, in at most `width` columns. If there is too little room, the bar becomes shorter, and
+/// then parts of the line are left out, the percentage last.
 std::string live_line(const ProgressFacts& facts, std::size_t width);
 
 /// The progress of a search for poses as text: "looking for poses: 12 of 100 found, 34000 candidates".
@@ -81,7 +82,7 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// Returns true if it is time to write the line; in this case, a new interval begins.
+  /// Returns true if it is time to write the line. The next time is then one interval later.
   bool is_due(Clock::time_point now);
   /// Writes the line. plain: returns the text if lines cannot be overwritten. live: returns the text for a terminal, in
   /// at most as many columns as its argument.
@@ -103,7 +104,8 @@ class ProgressPrinter {
  public:
   explicit ProgressPrinter(bool quiet) : line_(quiet), rate_(RecentRate::Clock::now()) {}
 
-  /// Tells that the next design of a sweep begins. design: its number, from 1.
+  /// Tells the printer that the next design of a sweep begins. design: number of the design, from 1. designs: number of
+  /// all designs.
   void begin_design(std::size_t design, std::size_t designs);
   void operator()(const Progress& progress);
 

@@ -41,7 +41,7 @@ void check_number(const ReplayOptions& options, const std::string& what, std::si
          count == 1 ? "the only number is 0" : fmt::format("give a number from 0 to {}", count - 1));
 }
 
-/// The index of the name options.factor in a list of known names. Throws InputError if the list lacks it. what: word
+/// The index of options.factor in a list of known names. Throws InputError if the list does not have it. what: the word
 /// for one of the names, for messages.
 std::size_t position_of(const ReplayOptions& options, const std::string& what, const std::vector<std::string>& known) {
   const auto found = std::ranges::find(known, options.factor);
@@ -73,7 +73,8 @@ ReplayedSample replay_drawn(const ReplayOptions& options, const StoredResult& re
   return replay_sample(stored.study, model, stored.poses.poses, slot, PoseIndex(options.pose), sample);
 }
 
-/// The index of the row of given errors that the command line names.
+/// The index of the row of given errors that the command line names: a case by its name, or a row of a table by the
+/// numbers of pose and sample.
 std::size_t row_of(const ReplayOptions& options, const GivenErrors& given) {
   if (given.samples == 0) refuse_sample(options, fmt::format("a {} has no samples", given.word));
   const std::size_t position = position_of(options, std::string(given.word), given.names);
@@ -115,7 +116,7 @@ void warn_of_other_program(const ReplayOptions& options, const StoredResult& res
                   options.result, result.poesy_version, result.git_commit, poesy_version(), git_commit()));
 }
 
-/// Warns if the result lists this sample with a status that differs from that of the replay.
+/// Warns if the result lists this sample as failed with another status than the replay found.
 void warn_of_difference(const ReplayOptions& options, const StoredResult& result, const ReplayedSample& replayed) {
   for (const Failure& failure : result.failures) {
     if (result.varied[failure.slot] != options.factor || failure.pose.value != options.pose ||

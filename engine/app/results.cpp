@@ -54,9 +54,9 @@ std::string cpu_name() {
   return "unknown";
 }
 
-/// Advice with which fewer samples may fail: on poses that are far outside the workspace, otherwise on options. It
-/// names the solver's method only for the metric "published" and for mechanisms without a metric, because the method
-/// matters only for these.
+/// Advice with which fewer samples may fail: on poses that are far outside the workspace, on machines that cannot be
+/// assembled, otherwise on options. The solver's method is named only for the metric "published" and for mechanisms
+/// without a metric, because it matters only for these.
 std::string advice(const Study& study, const PoseSet& poses, const SolveCounts& solves) {
   const std::string far = far_outside_clause(poses, study.model());
   if (!far.empty()) return "look at the units of the poses: " + far;
@@ -106,8 +106,8 @@ ExitCode judge_failures(const Study& study, const PoseSet& poses, const SolveCou
   return kTooManyNotConverged;
 }
 
-/// Judges a yield, and returns the exit code. certificate: true if the study found tolerances itself, and solved these
-/// machines only to certify the tolerances.
+/// Judges a yield, and returns the exit code. certificate: true if the study found the tolerances itself, and the yield
+/// is that of fresh machines that certify them.
 ExitCode judge_yield(const YieldVerdict& yield, bool certificate, const std::string& study_path,
                      const std::string& remedy) {
   using enum YieldVerdict::Decision;
@@ -144,8 +144,8 @@ ExitCode judge_limits(const Study& study, const StoredResult& result, const std:
   print("\n" + text_of(*table, output_width()));
   const LimitVerdicts& verdicts = *result.verdicts;
   if (verdicts.yield) {
-    // A kind that can be asked for a yield (StudyKind::ask_yield) judges machines. Any other kind with a yield in its
-    // result certifies the result with it.
+    // If a kind of study can be asked for a yield (StudyKind::ask_yield), the yield is that of the study's machines.
+    // For any other kind, a yield in the result is a certificate.
     const bool certificate = study.analysis.kind != nullptr && study.analysis.kind->ask_yield == nullptr;
     return judge_yield(*verdicts.yield, certificate, study_path, remedy);
   }
@@ -226,10 +226,11 @@ namespace {
 /// The beginning of the names of files beside a result: RESULT_certificate.
 std::string stem_beside(const std::filesystem::path& result) { return result.stem().string() + "_certificate"; }
 
-/// How the names end of the study that confirms a result, and of the files that this study may name.
+/// The endings of the names of the files that may be written beside a result: the study that repeats the certificate,
+/// and the files that this study may name.
 constexpr std::array<std::string_view, 4> kBeside{".toml", "_mechanism.toml", "_poses.csv", "_measured.csv"};
 
-/// The beginning of the comment in the study that confirms a result; the name of the result follows.
+/// The beginning of the comment in the study that repeats the certificate; the name of the result follows.
 constexpr std::string_view kRepeats = "repeats the certificate of ";
 
 /// The path of a file beside the result. end: ending of the file's name.
@@ -237,7 +238,8 @@ std::string path_beside(const std::filesystem::path& result, std::string_view en
   return (result.parent_path() / (stem_beside(result) + std::string(end))).string();
 }
 
-/// Returns true if a file beside the result belongs to an earlier run: the confirming study of that run names it.
+/// Returns true if a file beside the result belongs to an earlier run: the study that this run wrote beside the result
+/// names the file.
 bool is_of_earlier_study(const std::filesystem::path& result, const std::string& file) {
   const std::string study = path_beside(result, kBeside.front());
   std::error_code ignored;
@@ -245,8 +247,8 @@ bool is_of_earlier_study(const std::filesystem::path& result, const std::string&
          std::filesystem::is_regular_file(file, ignored);
 }
 
-/// Writes the study that confirms the result, RESULT_certificate.toml, and the files that this study names, beside the
-/// result. Returns the path of the study. The next run refuses to replace files that no such study names
+/// Writes the study that repeats the certificate, RESULT_certificate.toml, and the files that this study names, beside
+/// the result. Returns the path of the study. The next run refuses to replace files that no such study names
 /// (check_files_beside()), so neither this run nor a killed run may leave such files. For this reason, files that only
 /// an earlier study named are removed first, and the study is written before the files that it names.
 std::string write_beside(const Job& job, Study confirming) {
@@ -270,7 +272,7 @@ std::string write_beside(const Job& job, Study confirming) {
 
 void check_files_beside(const std::string& result, std::span<const std::string> inputs) {
   const std::filesystem::path path(result);
-  // Returns true if an earlier run wrote the file: a study that confirms its result, or a file that such a study names.
+  // Returns true if an earlier run wrote the file: it is a study that repeats a certificate, or such a study names it.
   const auto is_ours = [&](std::string_view end, const std::string& file) {
     return end == kBeside.front() ? is_marked(file, kRepeats) : is_of_earlier_study(path, file);
   };

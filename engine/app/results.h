@@ -20,8 +20,8 @@ namespace poesy::app {
 
 /// The facts about a run that has just ended on this machine. wall_seconds: duration of the run, s.
 RunFacts run_facts(double wall_seconds, std::size_t threads, std::uint64_t solves);
-/// The number of samples of a run: "2000 solves". If series gave the responses of some samples: "2000 samples (40
-/// solved, the others by series)".
+/// The number of samples of a run as text: "2000 solves". If some responses were computed from series: "2000 samples
+/// (40 solved, the others by series)".
 std::string samples_text(const RunFacts& facts);
 
 /// Options of the search for poses.
@@ -53,19 +53,20 @@ struct Job {
   Checkpoints& checkpoints() const { return *options.checkpoints; }
 };
 
-/// The outcome of a run: how the solves ended, the facts with the duration (including the earlier runs that the run
-/// continues), and the verdicts on limits.
+/// The outcome of a run. The counts of solves and the duration in `facts` include the earlier runs that the run
+/// continues.
 struct RunOutcome {
   SolveCounts solves;
   RunFacts facts;
   std::optional<LimitVerdicts> verdicts = std::nullopt;
   std::vector<std::string> row_names = {};  ///< names of the rows of errors in `verdicts`
-  std::string confirming = {};  ///< path of the study that confirms the result (check_files_beside()); empty: none
+  /// Path of the study that was written beside the result (check_files_beside()); empty: none.
+  std::string confirming = {};
 };
 
-/// A run may write, beside its result, a study that confirms the result with other draws, and files that this study
-/// names. Throws InputError if one of these files would replace an input, or a file that is not from such a study of an
-/// earlier run.
+/// A run may write, beside its result, a study that repeats the certificate of the result, and files that this study
+/// names. Throws InputError if one of these files would replace an input, or an existing file that was not written with
+/// an earlier result of this path.
 void check_files_beside(const std::string& result, std::span<const std::string> inputs);
 
 /// Runs a study of any kind, or a shard of it, and writes the result. If there are several ranks, only rank 0 writes.
@@ -81,27 +82,30 @@ struct Remedies {
   std::string failures;  ///< what to do if too many samples failed
 };
 
-/// Judges a result, and returns the exit code of the command. Prints PASS or FAIL for each limit. Limits that are not
-/// met are named on stderr, with the values found. If more samples failed than the study allows, a message on stderr
-/// says this first, because in this case no limit can be trusted. study_path: path of the study.
+/// Judges a result, and returns the exit code of the command. Prints PASS or FAIL for each limit. Messages on stderr
+/// name the limits that are not met, with the values found, and say if more samples failed than the study allows. In
+/// the latter case the exit code is that for failed samples, because no verdict on a limit can be trusted. study_path:
+/// path of the study.
 ExitCode judge(const Study& study, const SolveCounts& solves, const StoredResult& result, const std::string& study_path,
                const Remedies& remedies);
 
 /// An amount of memory in words: "about 250 MB", or "less than 1 MB".
 std::string memory_text(std::size_t bytes);
 
-/// Makes the error that there is not enough memory. path: path of the result. work: what was being done, "this run".
-/// needed: the memory that the work needs, as memory_text() gives it.
+/// Makes the error that says that there is not enough memory. path: path of the result. work: what was being done,
+/// "this run". needed: the memory that the work needs, as memory_text() gives it.
 FileError too_little_memory(const std::string& path, const std::string& work, const std::string& needed);
 
 /// Warns on stderr of what looks like a mistake in the mechanism (mechanism_doubts()).
 void warn_of_mechanism(const Study& study, const Model& model);
 
-/// What looks like a mistake in the mechanism, in the numbers of the study's tables, in the boxes in which it seeks
-/// poses (doubts_of()), and in the points of a calibrated study (correction_doubt()), one line each.
+/// What looks like a mistake, one line each: in the mechanism, in the sizes of drawn errors (size_doubts()), in the
+/// numbers of the study's tables and the boxes in which it seeks poses (doubts_of()), and in the points of a calibrated
+/// study (correction_doubt()).
 std::vector<std::string> all_doubts(const Study& study, const Model& model, const SelectedPoses& poses);
 
-/// What the study holds constant, leaves as it is, or calibrates, one line each.
+/// Notes on the study, one line each: how its machines are calibrated, which errors are constant, and what its kind
+/// says about the study (StudyKind::note).
 std::vector<std::string> study_notes(const Study& study);
 
 /// Reads a result file. Warns on stderr if the file was changed after it was written. Throws FileError.

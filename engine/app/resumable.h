@@ -43,8 +43,8 @@ struct ResumeOptions {
   }
 };
 
-/// Ends the command line that starts a run again: adds the options that commands with checkpoints share, except
-/// --resume. options: those of the command. Returns the command line as a shell reads it.
+/// Completes the command line that starts a run again: adds to `words` the options that all commands with checkpoints
+/// have, except --resume. options: the options of the command. Returns the command line as a shell reads it.
 template <class Options>
 std::string start_command(std::vector<std::string> words, const Options& options) {
   const auto add = [&](const std::string& name, const std::string& value) { words.insert(words.end(), {name, value}); };
@@ -131,7 +131,7 @@ class ResumableRun {
     if (end_ && Clock::now() >= *end_) interrupt();
   }
 
-  /// To be called after the result was written. Removes the checkpoints, or keeps the last one if the user asked for it
+  /// Removes the checkpoints after the result was written, or keeps the last one if the user asked for it
   /// (keep_checkpoint).
   void finish() {
     if (keep_checkpoint_) {
@@ -141,17 +141,17 @@ class ResumableRun {
     }
   }
 
-  /// To be called after an error that would occur again if the run were continued. Removes the checkpoints, because
-  /// they cannot lead to a result.
+  /// Removes the checkpoints after an error that would occur again if the run were continued, because they cannot lead
+  /// to a result.
   void discard() { files_.remove(); }
 
-  /// To be called after the run failed for lack of memory or because a file could not be written. Keeps the last state
-  /// if possible, and tells the user how to continue.
+  /// Keeps the last state, if possible, after the run failed for lack of memory or because a file could not be written.
+  /// Tells the user how to continue.
   void rescue() {
     try {
       if (!no_room_ && checkpoints_) checkpoints_->save();
     } catch (const FileError&) {
-      // The first problem is reported, not that a checkpoint could not be written.
+      // The error of the run is reported, and not that a checkpoint could not be written.
     } catch (const std::bad_alloc&) {
       // There is not enough memory for a checkpoint, either.
     }
@@ -161,7 +161,7 @@ class ResumableRun {
     }
   }
 
-  /// To be called after an interruption. Tells the user how to continue.
+  /// Tells the user how to continue the run after an interruption.
   void explain_interruption() const {
     say(Message::note, files_.exist() ? "interrupted; the work so far is kept in " + files_.newer() +
                                             ", continue with: " + resume_command()
@@ -217,7 +217,7 @@ class ResumableRun {
   RunTime before_;  ///< time of the earlier runs that this run continues
   double checkpoint_seconds_ = 0.0;
   Clock::time_point next_;
-  std::optional<Clock::time_point> due_since_;  ///< time at which the present checkpoint was due
+  std::optional<Clock::time_point> due_since_;  ///< time at which the checkpoint that is being written was due
   bool no_room_ = false;                        ///< true if the last checkpoint could not be written
   std::optional<Checkpoints> checkpoints_;
 };

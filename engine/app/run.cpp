@@ -33,7 +33,7 @@
 namespace poesy::app {
 namespace {
 
-/// The number of processors for this process: those to which the launcher bound it. If the launcher bound it to none,
+/// The number of processors for this process: those to which the launcher bound it. If the launcher did not bind it,
 /// the process takes an equal share of the machine's processors.
 std::size_t processors_of_rank(std::size_t ranks_on_this_machine) {
   const auto all = static_cast<std::size_t>(std::max(1L, sysconf(_SC_NPROCESSORS_ONLN)));
@@ -88,12 +88,12 @@ Shard parse_shard(const std::string& text) {
   throw InputError({}, "--shard is '" + printable(text) + "'", "write K/N with K from 1 to N, e.g. 2/5");
 }
 
-/// The error that there is not enough memory for a run.
+/// The error that says that there is not enough memory for a run.
 FileError too_little_for_run(const std::string& path, const Study& study, const Model& model, const PoseSet& poses) {
   return too_little_memory(path, "this run", memory_text(outlook(study, model, poses).memory.peak()));
 }
 
-/// Runs the study and shows the progress. If the run fails, also tells the user what happens to the checkpoints.
+/// Runs the study and shows the progress. If the run fails, also tells the user whether the checkpoints are kept.
 std::optional<RunOutcome> run_with_progress(Job& job, ResumableRun& resumable, bool quiet) {
   const auto act = [&] {
     ProgressPrinter printer(quiet);
@@ -113,13 +113,13 @@ Study study_of(const RunCommandOptions& options) {
   return study;
 }
 
-/// A text that identifies the run. It must be equal on all ranks.
+/// A text that identifies the run. All ranks must have the same text.
 std::string text_of(const CheckpointIdentity& identity) {
   return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", identity.poesy_version, identity.git_commit, identity.model,
                      identity.seed, identity.samples, identity.shard, identity.poses, identity.study);
 }
 
-/// Takes part in the run as a rank other than rank 0.
+/// Takes part in the run on a rank other than rank 0. threads: number of threads of this rank.
 void follow(const RunCommandOptions& options, std::size_t threads, Team& team) {
   const std::atomic<bool>& stop = catch_interrupts();
   const Study study = study_of(options);
@@ -160,7 +160,7 @@ int explained_interruption(const ResumableRun& resumable) {
   return kInterrupted;
 }
 
-/// Says how many poses of the workspace are not in the study, and why. This is a warning if the mechanism does not
+/// Says how many candidate poses are not in the study, and why. The message is a warning if the mechanism does not
 /// reach some of them. Otherwise it is a note, because the study asked for their rejection.
 void say_rejected(const SelectedPoses& poses, bool quiet) {
   const std::string text = rejected_text(poses.rejected, poses.candidates);
@@ -177,7 +177,7 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   const std::vector<std::string> inputs = inputs_of(options.study, study);
   const std::string path = check_result_path(named, inputs);
   if (kind_of(study).run.confirms) check_files_beside(path, inputs);
-  start_threads(threads);  // Threads start before any checkpoint is written.
+  start_threads(threads);  // early, because oneTBB ends the program if it cannot start a thread
   ResumableRun resumable(options.resume, path, start_command_of(options, team));
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   auto poses = find_poses(study, *model, {.quiet = options.quiet, .stop = &stop});

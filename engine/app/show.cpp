@@ -56,8 +56,8 @@ RowOrder order_of(const ShowOptions& options) {
                    suggestion(*options.sort, kRowOrders));
 }
 
-/// Throws InputError if --sort is given although the kind's errors have a fixed order, or --top although the result
-/// ranks no errors.
+/// Throws InputError if --sort is given although the errors of this kind of result have a fixed order, or --top is
+/// given although the result ranks no errors.
 void check_ranks(const ShowOptions& options, const std::string& path, const StoredResult& result,
                  const std::vector<Table>& tables) {
   const auto refuse = [&](std::string_view option, std::string_view what) {
@@ -68,8 +68,8 @@ void check_ranks(const ShowOptions& options, const std::string& path, const Stor
   if (options.top && std::ranges::none_of(tables, &Table::ranked)) refuse("--top", "ranks no errors");
 }
 
-/// Notes on the mechanism's numbers and, unless a table of errors was solved, on calibration and constant errors. Empty
-/// if this program cannot read the result's study.
+/// Remarks and warnings on the mechanism and the poses and, unless a table of errors was solved, notes on calibration
+/// and constant errors. Empty if this program cannot read the result's study.
 std::string study_lines(const StoredResult& result, std::size_t width) {
   const std::optional<Study> study = study_in(result, registry());
   if (!study) return {};
@@ -91,7 +91,8 @@ std::string study_lines(const StoredResult& result, std::size_t width) {
   return text;
 }
 
-/// Shortens the tables of single errors of a result whose features have a table of their own.
+/// Shortens the tables of single errors. Used for a result with features of a drawing, because these have a table of
+/// their own.
 void shorten_tables_of_errors(std::vector<Table>& tables) {
   constexpr std::size_t kShown = 20;
   for (Table& table : tables) {
@@ -126,8 +127,8 @@ int show_one(const ShowOptions& options) {
   return kDone;
 }
 
-/// The response for each of several results. The option --response gives one for all results, or one for each,
-/// separated by commas. Without the option each result has its default.
+/// The response for each of several results. The option --response names one for all results, or one for each result,
+/// separated by commas. Without the option, each result has its default response.
 std::vector<std::string> responses_of(const ShowOptions& options, std::span<const ReportedResult> results) {
   std::vector<std::string> names;
   for (std::size_t from = 0; from <= options.response.size();) {
@@ -146,8 +147,8 @@ std::vector<std::string> responses_of(const ShowOptions& options, std::span<cons
   return names;
 }
 
-/// Adds to `compared` the comparison of two rankings of errors or, if the kind of study ranks no errors, the kind's own
-/// table of comparison for the first result's response.
+/// Adds to `compared` the comparison of two results: the two rankings of errors, or, if the kind of study ranks no
+/// errors, the kind's own table of comparison for the first result's response.
 void compare_two(const ReportKind& kind, std::span<const ReportedResult> results, std::span<const RankedResult> ranked,
                  RowOrder order, ComparedResults& compared) {
   if (kind.two_rankings == nullptr) {

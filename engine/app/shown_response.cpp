@@ -18,8 +18,8 @@ namespace {
 
 bool ranks_errors(const StoredResult& result) { return kind_of(result).report.two_rankings != nullptr; }
 
-/// The response that a word may mean: a similar name, the displacement of a point, "tip_position" for "tip", or the
-/// first name that begins with the word. Empty if there is none.
+/// The response that a user may mean by a word: WORD_position (the displacement of a point, "tip_position" for "tip"),
+/// otherwise a similar name, otherwise the first name that begins with the word. Empty if there is none.
 std::string meant_response(const std::string& wanted, const std::vector<std::string>& known) {
   const std::string displacement = wanted + "_position";
   if (std::ranges::find(known, displacement) != known.end()) return displacement;

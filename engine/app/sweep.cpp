@@ -79,14 +79,15 @@ auto naming(std::span<const GivenKey> given, const Act& act) {
   }
 }
 
-/// The study of options.study, in which keys have the values of a design instead of their own.
+/// Reads the study file, with the values of a design for the keys that the sweep changes.
 Study study_with(const SweepOptions& options, std::span<const GivenKey> given) {
   Study study = naming(given, [&] { return read_study(options.study, registry(), StudyUse::run, given); });
   if (options.seed) study.seed = *options.seed;
   return study;
 }
 
-/// What looks like a mistake in designs. A doubt that holds for several designs is kept once, with the first of them.
+/// Collects what looks like a mistake in designs. A doubt that several designs raise is kept once, with the first of
+/// these designs.
 class DesignDoubts {
  public:
   void add(std::span<const GivenKey> given, const std::vector<std::string>& doubts) {
@@ -113,8 +114,8 @@ class DesignDoubts {
   std::vector<std::string> designs_;  ///< values of the design of each doubt, in words
 };
 
-/// The design with these values: its study and its poses. Adds what looks like a mistake in it to `doubts`. None if the
-/// user stopped the search for poses.
+/// Makes the design with these values: its study and its poses. Adds what looks like a mistake in the design to
+/// `doubts`. None if the user stopped the search for poses.
 std::optional<SweptDesign> design_of(const SweepOptions& options, const std::vector<GivenKey>& given,
                                      const std::atomic<bool>& stop, DesignDoubts& doubts) {
   Study study = study_with(options, given);
@@ -125,8 +126,8 @@ std::optional<SweptDesign> design_of(const SweepOptions& options, const std::vec
   return SweptDesign{given, std::move(study), *std::move(poses)};
 }
 
-/// The designs of a grid of values. Adds what looks like mistakes in them to `doubts`. None if the user stopped the
-/// search for poses.
+/// Makes all designs of a grid of values. Adds what looks like a mistake in a design to `doubts`. None if the user
+/// stopped the search for poses.
 std::optional<std::vector<SweptDesign>> designs_of(const SweepOptions& options,
                                                    std::span<const std::vector<GivenKey>> grid,
                                                    const std::atomic<bool>& stop, DesignDoubts& doubts) {
@@ -146,8 +147,8 @@ std::optional<std::vector<SweptDesign>> designs_of(const SweepOptions& options,
   return designs;
 }
 
-/// The identity of a sweep, by which a checkpoint is recognised: that of the first design, but with the studies and the
-/// poses of all designs.
+/// The identity of a sweep, by which its checkpoints are recognised: that of the first design, but with the studies and
+/// the poses of all designs.
 CheckpointIdentity identity_of(std::span<const SweptDesign> designs) {
   CheckpointIdentity all;
   std::string poses;
@@ -168,7 +169,7 @@ double seconds_of(std::span<const SweptDesign> designs, std::size_t threads) {
   return seconds_of_long_run(first.study, *model, first.poses.poses, threads, designs.size());
 }
 
-/// Runs all designs. If the run fails, also tells the user what happens to the checkpoints.
+/// Runs all designs. If the run fails, also tells the user whether the checkpoints are kept.
 std::optional<SweepResult> run_with_progress(const SweepOptions& options, std::span<const SweptKey> keys,
                                              std::span<const SweptDesign> designs, const std::string& path,
                                              RunOptions run, ResumableRun& resumable) {
@@ -246,7 +247,7 @@ void check_geometry_key(const std::string& set, const SweptKey& swept, const Mod
   }
   const auto is_bare = [](const std::string& value) { return parse_number(value).has_value(); };
   if (parameter->dimension == Dimension::number || !std::ranges::all_of(swept.values, is_bare)) return;
-  // Small numbers of a length are probably in SI, as in Python; others in the unit of drawings.
+  // Small numbers of a length are probably in SI, as in Python. All other numbers are probably in the unit of drawings.
   constexpr double kSmall = 10.0;
   std::array<std::string_view, 2> units{display_unit(parameter->dimension).name, si_unit(parameter->dimension)};
   const auto is_small = [](const std::string& value) { return std::abs(*parse_number(value)) < kSmall; };
@@ -263,7 +264,7 @@ void check_geometry_keys(const SweepOptions& options, std::span<const SweptKey> 
   try {
     study = read_study(options.study, registry(), StudyUse::run);
   } catch (const InputError&) {
-    return;  // the values of --set may make the study valid; its errors are reported with them
+    return;  // the values of --set may make the study valid; it is read again with these values
   }
   for (std::size_t k = 0; k < keys.size(); ++k) check_geometry_key(options.set[k], keys[k], study->model());
 }
@@ -279,7 +280,7 @@ int sweep(const SweepOptions& options) {
   const std::string path =
       check_result_path(options.result.empty() ? stem + "_sweep.h5" : options.result, inputs_of(options.study, first));
   const std::size_t threads = resolved_threads(options.threads);
-  start_threads(threads);  // Threads start before any checkpoint is written.
+  start_threads(threads);  // early, because oneTBB ends the program if it cannot start a thread
   ResumableRun resumable(options.resume, path, start_command_of(options));
   DesignDoubts doubts;
   const auto designs = designs_of(options, grid, stop, doubts);

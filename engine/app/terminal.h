@@ -61,8 +61,8 @@ int complain(const std::string& problem, ExitCode code);
 /// returns the code for this exception.
 int exit_code_of(const std::function<int()>& action);
 
-/// From now on, Ctrl-C, SIGTERM and SIGHUP set the returned flag instead of ending the program. A Ctrl-C after any of
-/// these signals ends the program as usual. Further SIGTERMs have no effect, because batch systems send several.
+/// Makes Ctrl-C, SIGTERM and SIGHUP set the returned flag instead of ending the program. A Ctrl-C after any of these
+/// signals ends the program as usual. Further SIGTERMs have no effect, because batch systems send several.
 const std::atomic<bool>& catch_interrupts();
 
 /// Sets the flag of catch_interrupts() as a signal would.

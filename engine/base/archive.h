@@ -22,7 +22,8 @@ namespace poesy {
 ///       archive.real(mean_);
 ///     }
 ///
-/// Bytes to read may come from any source. So state() must check them with expect(), which throws BytesError.
+/// The bytes may come from an untrusted source, so state() must check what it reads with expect(), which throws
+/// BytesError.
 class Archive {
  public:
   explicit Archive(ByteWriter& to) : to_(&to) {}        ///< An archive that writes to `to`, which must outlive it.
@@ -30,7 +31,8 @@ class Archive {
 
   bool reads() const { return from_ != nullptr; }  ///< Returns true if the archive reads, false if it writes.
 
-  /// Writes or reads a whole number, an index or an enumeration, up to `most`.
+  /// Writes or reads a whole number or an enumeration. When reading, throws BytesError if the value is above `most` or
+  /// does not fit an unsigned type.
   template <class Whole>
   void number(Whole& value, std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) {
     if (reads()) {
@@ -50,9 +52,9 @@ class Archive {
     real(value);
     real(more...);
   }
-  /// Writes or reads the state of an object, or the states of a list of objects. When reading, the object exists
-  /// already, and a list has its length. A packed object has write(ByteWriter&) and a static read(ByteReader&) instead
-  /// of state().
+  /// Writes or reads the state of an object, or the states of a list of objects. When reading, the object must exist
+  /// already, and a list must have its final length. An object without state() must have write(ByteWriter&) and a
+  /// static read(ByteReader&).
   template <class Object>
   void object(Object& object) {
     if constexpr (requires { object.state(*this); }) {
@@ -92,7 +94,7 @@ class Archive {
     if (reads()) value.emplace(sizes...);
     object(*value);
   }
-  /// Writes or reads a bool. When reading, returns the bool that was written.
+  /// Writes `value` and returns it, or reads a bool and returns that. When reading, `value` is ignored.
   bool flag(bool value) {
     std::uint64_t holds = value ? 1 : 0;
     number(holds, 1);
@@ -115,20 +117,20 @@ class Archive {
       to_->block(bytes);
     }
   }
-  /// Writes a number that the reader already knows. When reading, throws BytesError, with this problem as its text, if
-  /// the number that is read is not the known one.
+  /// Writes a number that the reader already knows. When reading, throws BytesError with the text `problem` if another
+  /// number was written.
   void known(std::uint64_t value, const char* problem) {
     std::uint64_t read = value;
     number(read);
     expect(read == value, problem);
   }
-  /// When reading, throws BytesError with this problem as its text unless the condition holds.
+  /// When reading, throws BytesError with the text `problem` unless `holds` is true. Does nothing when writing.
   void expect(bool holds, const char* problem) const {
     if (reads() && !holds) throw BytesError(problem);
   }
 
-  /// Writes an object by its write(ByteWriter&), or reads it by its static read(ByteReader&, known...). known: facts
-  /// about the object that the reader has.
+  /// Writes an object by its write(ByteWriter&), or reads it by its static read(ByteReader&, known...). known: further
+  /// arguments of read(), which are not in the bytes.
   template <class Object, class... Known>
   void packed(Object& object, const Known&... known) {
     if (reads()) {
@@ -149,11 +151,11 @@ class Archive {
 template <class Object>
 void write_state(const Object& object, ByteWriter& to) {
   Archive archive(to);
-  archive.object(const_cast<Object&>(object));  // writing does not change it
+  archive.object(const_cast<Object&>(object));  // writing does not change the object
 }
 
-/// Constructs an object and reads its state. sizes: arguments of the object's constructor. Throws BytesError for bytes
-/// that such an object cannot have written.
+/// Constructs an object and reads its state. sizes: arguments of the object's constructor. Throws BytesError if the
+/// bytes cannot be the state of an object with these sizes.
 template <class Object, class... Sizes>
 Object read_state(ByteReader& from, const Sizes&... sizes) {
   Object object(sizes...);

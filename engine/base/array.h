@@ -67,7 +67,7 @@ class AxisLayout {
   const Lengths& lengths() const { return lengths_; }  ///< The lengths of all axes.
   /// The number of elements.
   std::size_t elements() const { return product(lengths_); }
-  /// The index on each axis of the element with this number in row-major order.
+  /// The index on each axis of the element whose row-major index is `place`.
   Lengths positions(std::size_t place) const {
     Lengths at{};
     for (std::size_t k = kAxes; k-- > 0; place /= lengths_[k]) at[k] = place % lengths_[k];
@@ -83,8 +83,8 @@ class AxisLayout {
   }
 
  protected:
-  /// The elements at these indices on the first axes, as a range in row-major order: the number of the first element,
-  /// and how many elements there are.
+  /// The elements at these indices on the first axes are consecutive. Returns the row-major index of the first of them,
+  /// and their number.
   template <std::integral... Positions>
   std::pair<std::size_t, std::size_t> part(Positions... positions) const {
     constexpr std::size_t kFixed = sizeof...(Positions);
@@ -113,7 +113,7 @@ class ArrayView : public AxisLayout<Axes...> {
   using Layout = AxisLayout<Axes...>;        ///< The layout of its axes.
   using Lengths = typename Layout::Lengths;  ///< The length of each axis.
 
-  /// A view of these elements. Precondition: their number fits the lengths.
+  /// A view of these elements. Precondition: their number is the product of the lengths.
   ArrayView(std::span<T> elements, const Lengths& lengths) : Layout(lengths), elements_(elements) {
     POESY_EXPECTS(elements.size() == Layout::product(lengths));
   }
@@ -149,7 +149,8 @@ class Array : public AxisLayout<Axes...> {
   /// An array with these lengths, all elements equal.
   explicit Array(const Lengths& lengths, const T& element = T())
       : Layout(lengths), elements_(Layout::product(lengths), element) {}
-  /// An array with these lengths and elements, row-major. Precondition: their number fits.
+  /// An array with these lengths and elements, row-major. Precondition: the number of elements is the product of the
+  /// lengths.
   Array(const Lengths& lengths, std::vector<T> elements) : Layout(lengths), elements_(std::move(elements)) {
     POESY_EXPECTS(elements_.size() == Layout::product(lengths));
   }
@@ -206,7 +207,7 @@ class Array : public AxisLayout<Axes...> {
   std::vector<T> elements_;
 };
 
-/// Gives several arrays with the same axes these lengths. All elements are default-constructed.
+/// Replaces several arrays with the same axes by arrays of these lengths, with default-constructed elements.
 template <class First, class... Others>
 void make_room(const typename First::Lengths& lengths, First& first, Others&... others) {
   first = First(lengths);

@@ -14,7 +14,8 @@ namespace poesy {
 
 using Bytes = std::vector<std::byte>;  ///< The bytes of a state, message or file.
 
-/// The exception for bytes that do not have the expected form. what() is a clause that does not name a file.
+/// The exception for bytes that do not have the expected form. what() is a clause without the name of the file, such as
+/// "ends too early".
 class BytesError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -36,7 +37,7 @@ class ByteWriter {
   /// Keeps the written bytes in memory until take().
   ByteWriter() = default;
   /// Passes the written bytes to a sink, and keeps at most two pieces in memory. Every piece except the last has kPiece
-  /// bytes. An exception of the sink is thrown by the function that filled the piece.
+  /// bytes. If the sink throws, the exception leaves the function of the writer that filled the piece.
   explicit ByteWriter(Sink sink) : sink_(std::move(sink)) { bytes_.reserve(2 * kPiece); }
 
   /// Reserves memory for `bytes` bytes in all, so that a long state is not copied while it grows.

@@ -17,8 +17,8 @@ struct Place {
 /// The place as text, as far as known: "FILE", "FILE:LINE" or "FILE:LINE:COL"; empty without a file.
 std::string to_string(const Place& place);
 
-/// The message for std::bad_alloc if it is not known how much memory was needed. The program then ends with the exit
-/// code of FileError.
+/// The message of the program for a std::bad_alloc of unknown size. The program then ends with exit code 3, as for a
+/// FileError.
 inline constexpr const char* kTooLittleMemory =
     "there is not enough memory for this; end other programs, raise the limit (ulimit -v), or ask for less";
 

@@ -20,7 +20,7 @@ struct Index {
 /// Index of an error in the list of all errors (factors) of its model.
 using FactorIndex = Index<struct FactorList>;
 using PoseIndex = Index<struct PoseList>;  ///< Index of a pose in a study's pose set.
-/// Number of a sample in the sequence of draws of one factor at one pose.
+/// Number of a sample, from 0, in the sequence of draws of a factor at a pose.
 using SampleIndex = Index<struct SampleList>;
 
 }  // namespace poesy

@@ -7,8 +7,8 @@ namespace poesy {
 bool matches(std::string_view pattern, std::string_view text) {
   std::size_t p = 0;
   std::size_t t = 0;
-  // star: index of the last '*' in the pattern. tried: index in the text at which the rest of the pattern, after this
-  // '*', was last tried.
+  // star: index of the last '*' that was reached in the pattern. tried: index in the text at which the pattern after
+  // this '*' was last tried.
   std::size_t star = std::string_view::npos;
   std::size_t tried = 0;
   while (t < text.size()) {

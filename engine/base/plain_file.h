@@ -11,7 +11,8 @@
 namespace poesy {
 
 /// Says what is at a path if it is not a plain file: "a folder", "a FIFO", "a device", "a socket". Empty for a plain
-/// file, and if the type is unknown. The function does not open the path, because opening a FIFO waits for a writer.
+/// file, for a path where nothing is, and if the type is unknown. The function does not open the path, because opening
+/// a FIFO waits for a writer.
 std::string_view other_than_file(const std::string& path);
 
 /// A plain file that is open for reading. Opening never blocks.
@@ -23,10 +24,10 @@ class PlainFile {
   ~PlainFile();
 
   bool is_open() const { return descriptor_ >= 0; }  ///< Returns true if the file is open.
-  /// The reason why the file is not open.
+  /// The reason why the file is not open. other() is empty unless it is the reason.
   /// @{
   std::string_view other() const { return other_; }  ///< result of other_than_file()
-  int error() const { return error_; }  ///< errno of opening; EINVAL if there is something other than a plain file
+  int error() const { return error_; }  ///< errno of opening; EINVAL if other() is not empty; 0 if the file is open
   /// @}
 
   /// Reads from byte `at` of the file until `to` is full or the file ends. Returns the number of bytes; none on a disk

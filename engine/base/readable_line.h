@@ -6,11 +6,12 @@
 
 namespace poesy {
 
-/// A line of a resolved study with the quantities in quotes as readable_text(): 'z = "0.00015 m"' is 'z = "0.15 mm"'.
+/// A line of a resolved study in which each quantity in quotes is replaced by its readable_text(): 'z = "0.00015 m"'
+/// becomes 'z = "0.15 mm"'.
 std::string with_readable_quantities(std::string_view line);
 
-/// Two different lines with_readable_quantities(), or as they are if they would then be equal, because readable numbers
-/// are rounded.
+/// Applies with_readable_quantities() to two different lines. If rounding would make them equal, returns them
+/// unchanged.
 std::pair<std::string, std::string> with_readable_quantities(std::pair<std::string, std::string> lines);
 
 }  // namespace poesy

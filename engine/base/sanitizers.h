@@ -1,7 +1,7 @@
 #pragma once
 
-// Defines macros that say which sanitizers this build has, because each compiler has its own macros:
-// POESY_ADDRESS_SANITIZER, POESY_THREAD_SANITIZER, and POESY_SANITIZED if it has either.
+// Defines POESY_ADDRESS_SANITIZER or POESY_THREAD_SANITIZER if this build has that sanitizer, and POESY_SANITIZED if it
+// has either of them. Compilers state this in different macros.
 #if defined(__SANITIZE_ADDRESS__)
 #define POESY_ADDRESS_SANITIZER
 #endif

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostWords = 12;
 
-/// A word of other programs, and the word of poesy for the same thing.
+/// A word that other programs use, and the word that poesy uses for the same thing.
 struct Synonym {
   std::string_view word;
   std::string_view ours;
@@ -60,7 +60,7 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-/// The word in the form $'...', with escapes for control characters (for bash, ksh and zsh).
+/// The word in the form $'...' of bash, ksh and zsh, with escapes for all bytes that are not printable ASCII.
 std::string escaped_for_shell(const std::string& word) {
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::string text = "$'";
@@ -82,7 +82,7 @@ bool within_number(std::string_view before, std::string_view after) {
   return !before.empty() && !after.empty() && digit(before.back()) && (digit(after.front()) || after.front() == '%');
 }
 
-/// The text before the first blank at which a line may end.
+/// The text before the first blank at which a line may be broken.
 std::string_view first_word(std::string_view text) {
   std::size_t end = text.find(' ');
   while (end < text.size() && within_number(text.substr(0, end), text.substr(end + 1))) end = text.find(' ', end + 1);

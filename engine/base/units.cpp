@@ -84,12 +84,12 @@ std::string number_text(double value, Format... format) {
 /// A number at the beginning of a text.
 struct NumberRead {
   double value = 0.0;
-  std::errc failure{};    ///< default: a number was read, which may be infinite or NaN
+  std::errc failure{};    ///< std::errc() if a number was read, which may be infinite or NaN
   std::string_view rest;  ///< the text after the number
 };
 
 NumberRead read_number(std::string_view text) {
-  // std::from_chars does not accept a plus sign; one is allowed here, but not "+-1".
+  // std::from_chars does not accept a plus sign, so it is skipped here; "+-1" stays invalid.
   const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
   const char* end = text.data() + text.size();
   NumberRead read;
@@ -99,14 +99,15 @@ NumberRead read_number(std::string_view text) {
   return read;
 }
 
-/// Returns true if a number that is out of range is too small, false if it is too large.
+/// For a number outside the range of double: returns true if it is too close to 0, false if it is too large.
 bool is_too_small(std::string_view number) {
   const std::size_t exponent = number.find_first_of("eE");
   if (exponent != std::string_view::npos) return number.substr(exponent + 1).starts_with('-');
   return number.find_first_of("123456789") > number.find('.');
 }
 
-/// The reason why the text does not begin with a finite number; empty if it does.
+/// The reason why the text does not begin with a finite number, or that the number has a decimal comma; empty if there
+/// is no such problem.
 std::string problem_of(const NumberRead& read, std::string_view text) {
   if (read.failure == std::errc::result_out_of_range) {
     const std::string_view number = text.substr(0, text.size() - read.rest.size());

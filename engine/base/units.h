@@ -32,7 +32,7 @@ const Unit* find_unit(std::string_view spelling);
 /// The names of the units of one dimension, or of all dimensions, as a list: "m, cm, mm, um, in, mil, thou".
 std::string unit_names(std::optional<Dimension> dimension = std::nullopt);
 
-/// The name: "length", "angle", "time", "number", "force", "moment" or "energy".
+/// The name of a dimension: "length", "angle", "time", "number", "force", "moment" or "energy".
 std::string_view name(Dimension dimension);
 std::string with_article(Dimension dimension);  ///< The name with its article: "a length", "an angle".
 std::string_view si_unit(Dimension dimension);  ///< The SI unit: "m", "rad", "s", "1", "N", "N m" or "J".
@@ -50,15 +50,15 @@ struct Quantity {
   Dimension dimension = Dimension::number;  ///< physical dimension
 };
 
-/// The exception for a text that is not of the form "NUMBER UNIT". what() is a clause that does not name a file.
+/// The exception for a text that is not of the form "NUMBER UNIT". what() is a clause without the name of the file.
 class QuantityError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
 };
 
 /// Reads "1.5 mm", "-0.5 rad", "10 um", "2 N m": a finite number and a unit that find_unit() knows. Throws
-/// QuantityError with the reason and the known units: those of the wanted dimension, or of all dimensions if none is
-/// wanted.
+/// QuantityError with the reason. `wanted` only selects the known units that the message lists (empty: all); the
+/// dimension of the result may differ from it.
 Quantity parse_quantity(std::string_view text, std::optional<Dimension> wanted = std::nullopt);
 
 /// Reads a text that is one finite number, independent of the locale; empty for any other text.
@@ -70,7 +70,7 @@ std::string number_problem(std::string_view text);
 
 std::string shortest(double value);  ///< The shortest text that reads back as the same number, such as "0.001".
 
-/// A quantity for a study file, which reads back exactly: "0.001 m", "0.5 rad".
+/// A quantity in SI units, as text from which parse_quantity() reads the same quantity: "0.001 m", "0.5 rad".
 std::string to_text(Quantity quantity);
 
 /// A quantity in its display_unit(), to `digits` digits, such as "80 mm" or "1 deg".

@@ -34,7 +34,7 @@ double ValueLimit::badness(double value) const {
 }
 
 std::size_t ValueLimit::poses_beyond(std::size_t poses) const {
-  constexpr double kRounding = 1e-9;  // added so that 0.1 x 10 poses is one pose, although 1 - 0.9 is rounded
+  constexpr double kRounding = 1e-9;  // so that a share of 0.9 leaves out 1 of 10 poses, although 1 - 0.9 is rounded
   return static_cast<std::size_t>(std::floor((1.0 - share_) * static_cast<double>(poses) + kRounding));
 }
 

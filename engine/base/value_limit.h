@@ -22,7 +22,7 @@ class ValueLimit {
 
   double from() const { return from_; }  ///< Lower end; minus infinity for none.
   double to() const { return to_; }  ///< Upper end; infinity for none. For a limit on the spread, the largest spread.
-  double share() const { return share_; }        ///< Share of the poses of a machine at which the limit is kept.
+  double share() const { return share_; }        ///< Share of the poses of a machine at which it must keep the limit.
   bool is_spread() const { return is_spread_; }  ///< Returns true if the spread over the poses is limited.
   /// Returns true if the limit is on the magnitude of a value.
   bool is_magnitude() const { return from_ == -to_ && !is_spread_; }
@@ -32,7 +32,7 @@ class ValueLimit {
   /// Returns true if the limit is on the magnitude at each pose, which is the simplest form.
   bool is_plain() const { return is_magnitude() && share_ == 1.0; }
 
-  /// Returns true if the limit allows this value, or this spread. Returns false for NaN.
+  /// Returns true if the limit allows this value (for a limit on the spread: this spread). Returns false for NaN.
   bool holds(double value) const { return from_ <= value && value <= to_; }
   /// A number that is larger for a worse value. For a limit on magnitudes it is the magnitude. For other limits it is
   /// the distance by which the value is beyond the nearer end, and negative inside the limit. Infinite for NaN.
@@ -40,9 +40,9 @@ class ValueLimit {
   /// The number of poses, out of `poses`, at which a machine may be beyond the limit.
   std::size_t poses_beyond(std::size_t poses) const;
   /// The number that decides whether a machine keeps the limit. For a limit on the spread it is the spread of the
-  /// values. For other limits it is the worst value (largest badness) after poses_beyond() worse ones are left out.
-  /// values: the response at the poses where the machine is solved; the function reorders them. poses: the number of
-  /// all poses of the machine. NaN if no value is left, or for a spread if a value is NaN.
+  /// values. For other limits it is the worst value (largest badness) after the poses_beyond() worst values are left
+  /// out. values: the response at the poses where the machine is solved; the function reorders them. poses: the number
+  /// of all poses of the machine. Returns NaN if no value is left, or if a value is NaN in a limit on the spread.
   double deciding(std::span<double> values, std::size_t poses) const;
   /// Returns true if a machine keeps the limit. values, poses: as for deciding(). A pose where the machine is not
   /// solved counts as a pose where the limit is kept.

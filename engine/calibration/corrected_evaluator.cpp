@@ -12,8 +12,8 @@ namespace poesy::calibration {
 namespace {
 
 constexpr int kMostSteps = 20;
-// m or rad: if the error of the commanded coordinates is smaller, one first-order correction suffices, because far less
-// than this remains after it.
+// m or rad: if the error of the commanded coordinates is smaller than this, one first-order correction is enough,
+// because the error that remains after it is far smaller.
 constexpr double kSmall = 1e-8;
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

@@ -14,19 +14,20 @@ namespace poesy::calibration {
 
 /// The controllers of several calibrated machines, one for each machine.
 struct Controllers {
-  Matrix errors;  ///< [all errors x machines] errors that each controller corrects, SI; NaN if the machine was not
-                  ///< calibrated
-  /// [places x machines] Fitted numbers of the measuring device's frame and of the target; their true values are 0.
+  Matrix errors;  ///< [all errors x machines] errors that each controller corrects, SI; NaN if not calibrated
+  /// [places x machines] Fitted numbers of the frame of the measuring device and of the target (Measurement), SI. Their
+  /// true values are 0.
   Matrix phi;
 };
 
-/// Solves calibrated machines, each at the drive positions to which its own controller moves. The responses that are
-/// components of the platform's displacement give the remaining displacement: the displacement from the commanded pose
-/// as the measuring device sees it. All other responses are those of the machine at these drive positions. The outcome
-/// is non_finite if the machine was not calibrated, or if its controller finds no drive positions.
+/// Solves calibrated machines, each at the drive positions to which its own controller moves. Responses that are
+/// components of the platform's displacement have the value of the remaining displacement: that from the commanded
+/// pose, as the measuring device sees it. All other responses are those of the machine at these drive positions. The
+/// status is SolveStatus::non_finite if the machine was not calibrated, or if its controller finds no drive positions.
 class CorrectedEvaluator final : public Evaluator {
  public:
-  /// The responses are those of solving_model(model). Throws std::invalid_argument as ExactMachine does.
+  /// The model that is solved is solving_model(model), without the responses that a study adds. Throws
+  /// std::invalid_argument as ExactMachine does.
   CorrectedEvaluator(const Model& model, const SolverOptions& solver, CoordinateError commanded, Frame frame);
 
   /// Sets the controllers for the next blocks of samples. Precondition: each of these blocks has one sample for each
@@ -43,10 +44,10 @@ class CorrectedEvaluator final : public Evaluator {
     std::array<SolveStatus, 2> status;
     std::array<std::uint32_t, 2> iterations;
 
-    /// The values for the second set of errors, from rows with a value for each set.
+    /// From rows [rows x 2] with a value for each set of errors, the values for the second set.
     static std::vector<double> second(const std::vector<double>& rows);
   };
-  /// The outcome of one machine.
+  /// The outcome of one machine; see OutcomeBlock.
   struct Outcome {
     std::vector<double> responses;
     std::vector<double> details;
@@ -54,23 +55,23 @@ class CorrectedEvaluator final : public Evaluator {
     std::uint32_t iterations = 0;
   };
 
-  /// The largest number of poses for which a CommandedPose is kept. It is kept because later samples use the same pose
+  /// The largest number of poses for which `poses_` keeps a CommandedPose, because later samples use the same poses
   /// again.
   static constexpr std::size_t kMostPoses = 1024;
 
   const CommandedPose& commanded_at(std::span<const double> pose);
-  /// [all errors x 2] The errors that the controller knows, and the true errors of sample b.
+  /// [all errors x 2] First the errors that the controller knows, then the true errors of sample b, SI.
   Matrix errors_of(const SampleBlock& samples, std::size_t b) const;
   /// Solves the machine at a pose with the errors that the controller knows, and with the true errors of the sample.
   Pair solve(std::span<const double> pose, const Matrix& errors, std::size_t details);
   /// The displacement of the platform for one set of errors (0 or 1), from the responses that are its components.
   Displacement displacement_of(const Pair& pair, std::size_t set) const;
-  /// Solves sample b with the drive positions of its controller. uncorrected: the displacement at the pose that the
-  /// controller expects without a correction.
+  /// Solves sample b with the drive positions to which its controller moves. uncorrected: the displacement at the
+  /// commanded pose with the errors that the controller knows and without a correction of the drives.
   Outcome corrected(const SampleBlock& samples, std::size_t b, const CommandedPose& commanded,
                     const Displacement& uncorrected, std::size_t details);
-  /// Replaces the responses of the platform's displacement by those of the remaining displacement `left`, as the device
-  /// sees it.
+  /// Replaces those responses that are components of the platform's displacement, or norms of them, by the values for
+  /// the remaining displacement `left` as the device sees it.
   void move(const CommandedPose& commanded, const Displacement& left, std::size_t b, Outcome& outcome) const;
 
   ExactMachine machine_;

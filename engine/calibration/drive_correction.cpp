@@ -7,8 +7,8 @@ namespace poesy::calibration {
 namespace {
 
 constexpr int kMostSteps = 30;
-constexpr double kExact = 1e-15;  // m or rad: a coordinate error below this is rounding
-// In m or rad: the coordinate error that is accepted if further steps no longer reduce it.
+constexpr double kExact = 1e-15;  // m or rad: a smaller coordinate error is only rounding
+// m or rad: a smaller coordinate error is accepted if a step no longer halves it.
 constexpr double kAsExact = 1e-12;
 constexpr double kStepOfPose = 1e-5;  // m or rad: step of the coordinates for finite differences
 

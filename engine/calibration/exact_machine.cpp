@@ -12,7 +12,7 @@ namespace {
 
 Vector3 vector_of(const SketchVector& vector) { return {vector[0], vector[1], vector[2]}; }
 
-/// The axes of the platform's frame in a sketch, as columns. Precondition: the sketch has that frame.
+/// The axes of the platform's frame in a sketch, as columns. Precondition: the sketch has a frame of the platform.
 Matrix3 axes_of(const Sketch& sketch) {
   const SketchedFrame* const frame = sketch.platform_frame();
   POESY_EXPECTS(frame != nullptr);
@@ -21,7 +21,7 @@ Matrix3 axes_of(const Sketch& sketch) {
   return axes;
 }
 
-/// The largest distance between two points, m: two joints, or a joint and the point P.
+/// The largest distance between two joints, or between a joint and the point P, m.
 double reach_of(const Sketch& sketch) {
   std::vector<Vector3> points{vector_of(sketch.platform)};
   for (const auto& limb : sketch.limbs) {

@@ -13,7 +13,7 @@
 #include "engine/linalg/decompositions.h"
 #include "engine/model/model.h"
 
-/// Exact solves of a machine with errors. Results are poses of its platform in double precision.
+/// Exact solves of a machine with errors, which give the displacement of the platform in double precision.
 namespace poesy::calibration {
 
 using linalg::Matrix;             ///< a matrix of any size
@@ -28,7 +28,7 @@ struct Placement {
   Vector3 tip;     ///< tool point, m; equal to P if there is no tool
 };
 
-/// The motion of the platform from its nominal placement at a commanded pose, in the base frame.
+/// The displacement of the platform from its nominal placement at a commanded pose, in the base frame.
 struct Displacement {
   Matrix3 turn;   ///< rotation about P
   Vector3 moved;  ///< displacement of P, m
@@ -40,19 +40,19 @@ inline constexpr std::array<std::string_view, 9> kComponents{"theta_x", "theta_y
                                                              "z",       "tip_x",   "tip_y",   "tip_z"};
 using Components = Eigen::Matrix<double, 9, 1>;  ///< values in the order of kComponents, SI
 
-/// The components of a displacement. nominal: placement of the perfect mechanism at the commanded pose.
+/// Computes the components of a displacement. nominal: placement of the perfect mechanism at the commanded pose.
 Components components(const Displacement& displacement, const Placement& nominal);
 
-/// Converts a displacement from the nominal placement `from` to the displacement from the nominal placement `to`. The
-/// placement of the platform stays the same.
+/// For a platform that is displaced from the nominal placement `from`, returns its displacement from the nominal
+/// placement `to`.
 Displacement seen_from(const Displacement& displacement, const Placement& from, const Placement& to);
 
 /// Computes the displacement of a mechanism's platform under given errors. Owns the scratch memory of one thread. The
 /// model must outlive this object.
 class ExactMachine {
  public:
-  /// Throws std::invalid_argument with a clause if the model does not report the displacement of its platform or has no
-  /// sketch of its home pose.
+  /// Throws std::invalid_argument if the model has no responses for the displacement of the platform, or no sketch of
+  /// the home pose. what() is a clause about the mechanism.
   ExactMachine(const Model& model, const SolverOptions& solver);
 
   /// The model that is solved: solving_model() of the given model, without responses that a study adds to it.
@@ -60,13 +60,13 @@ class ExactMachine {
   Evaluator& evaluator() { return *evaluator_; }            ///< The evaluator of the model.
   std::size_t errors() const { return no_errors_.size(); }  ///< The number of all errors of the model.
   double reach() const { return reach_; }                   ///< Largest distance between joints and P at home, m.
-  std::uint64_t solves() const { return solves_; }          ///< The number of sets of errors that were solved so far.
+  std::uint64_t solves() const { return solves_; }          ///< Number of solves so far (sets of errors at a pose).
 
   /// The nominal placement of the platform, without errors. pose: SI. Precondition: the pose is reachable.
   Placement nominal(std::span<const double> pose) const;
 
-  /// The displacements at a reachable pose for several sets of errors, each solved on its own. errors: [all errors x
-  /// sets], SI. None where a machine is not solved.
+  /// The displacements at a reachable pose for several sets of errors (machines). errors: [all errors x sets], SI. None
+  /// for a set that is not solved.
   std::vector<std::optional<Displacement>> displaced(std::span<const double> pose, const Matrix& errors);
   /// The displacement for one set of errors (all errors of the model, SI); none if the machine is not solved.
   std::optional<Displacement> displaced(std::span<const double> pose, const Vector& errors);
@@ -74,7 +74,7 @@ class ExactMachine {
  private:
   const Model* model_;
   std::unique_ptr<Evaluator> evaluator_;
-  std::array<std::size_t, 6> responses_;  ///< indices of the responses that are the first six of kComponents
+  std::array<std::size_t, 6> responses_;  ///< indices of the responses for the first six kComponents
   std::vector<double> no_errors_;
   std::vector<FactorIndex> all_;
   Matrix3 home_;

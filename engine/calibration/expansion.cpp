@@ -11,7 +11,7 @@ namespace {
 using Eigen::Index;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-constexpr double kStepOfValue = 1e-5;  // m or rad: step of the displacements for finite differences
+constexpr double kStepOfValue = 1e-5;  // m or rad: largest change of a displacement in a step for finite differences
 // m, rad or a slope: step of each number of phi (see Derivatives) for finite differences
 constexpr double kStepOfPlace = 1e-5;
 
@@ -23,9 +23,9 @@ Vector6 numbers_of(const Displacement& displacement) {
 
 Displacement displaced_by(const Vector6& numbers) { return {lie::exp(Vector3(numbers.head<3>())), numbers.tail<3>()}; }
 
-/// The errors [all errors x machines] of the machines around zero errors that an expansion needs. The first machine has
-/// no errors. Two follow for each fitted number: one step forward and one back. Two follow for each pair of numbers:
-/// both forward and both back.
+/// The errors [all errors x machines] of the machines from which an expansion about zero errors is computed. The first
+/// machine has no errors. Then come two machines for each fitted number, one step forward and one step back, and two
+/// for each pair of numbers, both forward and both back.
 Matrix machines_around(const FittedDirections& directions) {
   const Matrix steps = directions.F * directions.step.asDiagonal();
   const Index k = steps.cols();

@@ -12,19 +12,19 @@ struct Derivatives;
 
 /// The displacements at the poses of a measurement as polynomials of second degree in theta, the fitted numbers of the
 /// errors (FittedDirections). The coefficients are differences of exact solves around zero errors. They are computed
-/// once, and then give derivatives at any estimate of any machine without a further solve. The relative error of a
-/// derivative is about the square of (errors / lengths of the mechanism).
+/// once, and then give derivatives at any estimate of any machine without a further solve. The relative error of such a
+/// derivative is about the square of the ratio of the errors to the lengths of the mechanism.
 class Expansion {
  public:
-  /// Solves k^2 + k + 1 machines at each pose, for k fitted numbers. Throws std::invalid_argument with a clause if a
-  /// machine is not solved.
+  /// Solves k^2 + k + 1 machines at each pose, for k fitted numbers. Throws std::invalid_argument if a machine is not
+  /// solved; what() is a clause about the mechanism.
   Expansion(const Measurement& measurement, const FittedDirections& directions);
 
   /// [poses] The displacements at zero errors.
   const std::vector<Displacement>& without_errors() const { return without_errors_; }
 
   /// The derivatives of the measured values at the estimates theta of the errors and phi of the places (Derivatives).
-  /// displacements: those of the machine with the errors theta, one for each pose.
+  /// displacements: [poses] exact displacements of the machine at theta.
   Derivatives derivatives(const Measurement& measurement, const Vector& theta,
                           const std::vector<Displacement>& displacements, const Vector& phi) const;
 
@@ -32,7 +32,7 @@ class Expansion {
   /// The polynomials at one pose: rotation vector (rad) and displacement of P (m) as functions of theta.
   struct AtPose {
     Matrix slope;                     ///< [6 x numbers] first derivatives at theta = 0
-    std::array<Matrix, 6> curvature;  ///< [numbers x numbers] second derivatives of each of the six functions
+    std::array<Matrix, 6> curvature;  ///< [numbers x numbers] second derivatives of each function at theta = 0
   };
 
   std::vector<Displacement> without_errors_;

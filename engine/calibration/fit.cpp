@@ -16,17 +16,18 @@ constexpr double kShortest = 1e-9;  // the iteration ends if every scaled number
 // The iteration also ends if a step changes all values together by less than this share of their noise. Such a step
 // moves each estimate by at most this share of its standard deviation.
 constexpr double kShortestInNoise = 1e-8;
-// The same bound if derivatives come from an expansion, which is not exact: used instead of kShortestInNoise.
+// Used instead of kShortestInNoise if derivatives come from an expansion, which is not exact.
 constexpr double kShortestByExpansion = 1e-5;
-constexpr double kRounding = 1e-15;  // m or rad: rounding of an exact solve
+constexpr double kRounding = 1e-15;  // m or rad: rounding error of an exact solve
 // A sum of squares that grows by less than this share counts as not growing.
 constexpr double kRoundingOfSum = 1e-10;
 constexpr double kGrowthByExpansion = 1e-6;  // used instead of kRoundingOfSum with an expansion
 constexpr double kRankOfFrame = 1e-9;        // singular values and pivots below this share of the largest count as 0
 // m, rad or a slope: step of each number of phi (see Derivatives) for finite differences
 constexpr double kStepOfPlace = 1e-4;
-// Step of a fitted number for finite differences, as a share of the machine's reach or in rad. The error of truncation
-// (fourth power of the step) is below 1e-13, and the error of rounding (of a solve, over the step) is about 2e-12.
+// Step of a fitted number for finite differences, as a share of the machine's reach or in rad. The truncation error
+// (fourth power of the step) is below 1e-13, and the rounding error (that of a solve divided by the step) is about
+// 2e-12.
 constexpr double kStep = 5e-4;
 
 /// The points of a central difference of fourth order, in steps, and their weights.
@@ -47,10 +48,11 @@ Vector joined(const Vector& top, const Vector& bottom) {
   return all;
 }
 
-/// Divides each row by its standard deviation.
+/// Divides each row by the standard deviation of its value.
 Matrix over(const Matrix& rows, const Vector& sd) { return sd.cwiseInverse().asDiagonal() * rows; }
 
-/// The Gauss-Newton step of theta, the fitted numbers of the errors, divided by their scale.
+/// The Gauss-Newton step of theta, the fitted numbers of the errors, divided by their scale. residual, prior_residual:
+/// see Point.
 Vector scaled_step(const ScaledFit& at, const Vector& residual, const Matrix& prior, const Vector& prior_residual) {
   if (prior.rows() == 0) {
     const auto r = static_cast<Eigen::Index>(at.rank);
@@ -62,13 +64,13 @@ Vector scaled_step(const ScaledFit& at, const Vector& residual, const Matrix& pr
   return linalg::least_squares(with_rows(at.reduced, prior), Matrix(joined(of_measurements, prior_residual)));
 }
 
-/// A point of the iteration: an estimate and its residuals.
+/// A point of the iteration: estimates theta and phi (see Derivatives) and their residuals.
 struct Point {
   Vector theta;
   Vector phi;
   std::vector<Displacement> displacements = {};  ///< displacements at the poses of the measurement
-  Vector residual = {};                          ///< residuals of the measured values over their standard deviations
-  Vector prior_residual = {};                    ///< residuals of the prior
+  Vector residual = {};                          ///< residuals of the measured values divided by their noise
+  Vector prior_residual = {};                    ///< centre - root theta (see Prior)
 
   double sum() const { return residual.squaredNorm() + prior_residual.squaredNorm(); }
 };
@@ -95,8 +97,8 @@ class Path {
     return problem_->expansion->derivatives(problem_->measurement, here_.theta, here_.displacements, here_.phi);
   }
 
-  /// Makes a step. Returns true if the step was so short that the fit has converged. Returns none if no part of the
-  /// step lowers the sum.
+  /// Makes a step, or a half, a quarter, ... of it, with which the sum of squares does not grow. Returns true if that
+  /// step was so short that the fit has converged. Returns none if there is no such step.
   std::optional<bool> step(const Derivatives& derivatives) {
     const Vector& scale = problem_->directions.scale;
     const ScaledFit at = scaled_fit(derivatives, problem_->sd, scale);
@@ -117,7 +119,7 @@ class Path {
   }
 
  private:
-  /// The sum of squares that rounding alone may cause.
+  /// The sum of squares (see Point::sum) that rounding alone may cause.
   double least_sum() const { return (kRounding * problem_->sd.cwiseInverse()).squaredNorm(); }
 
   std::optional<Point> point(const Vector& theta, const Vector& phi) const {

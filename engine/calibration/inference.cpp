@@ -12,10 +12,11 @@ namespace {
 
 // A fitted number is undetermined if its diagonal element of the projector on the null space exceeds this.
 constexpr double kUnseenShare = 1e-6;
-constexpr double kLeastFreedom = 1e-6;  // if 1 - leverage of a value is below this, no other value checks it
-constexpr double kFalseOutlier = 0.01;  // probability of at least one false outlier in a file
+constexpr double kLeastFreedom = 1e-6;  // a value with 1 - leverage below this is not checked by any other value
+constexpr double kFalseOutlier = 0.01;  // probability that a measurement without outliers has at least one false one
 
-/// The covariance of the scaled numbers. With a prior it covers all directions, without one only the determined ones.
+/// The covariance of the scaled numbers, for the stated noise. Without a prior it is 0 along directions that are not
+/// determined. prior: Prior::root times the scale.
 Matrix scaled_covariance(const ScaledFit& fit, const Matrix& prior) {
   if (prior.rows() == 0) {
     const auto r = static_cast<Eigen::Index>(fit.rank);
@@ -29,7 +30,7 @@ Matrix scaled_covariance(const ScaledFit& fit, const Matrix& prior) {
   return inverse * inverse.transpose();
 }
 
-/// Sets the results of the chi-square test and the estimated factor of the noise.
+/// Sets the results of the chi-square test (dof, p), the root mean square, and the estimated factor of the noise.
 void test(const FitResult& fit, bool has_prior, const InferenceOptions& options, Inference& found) {
   const auto m = static_cast<std::size_t>(fit.residual.size());
   const std::size_t used = fit.scaled.frame_rank() + (has_prior ? 0 : fit.scaled.rank);

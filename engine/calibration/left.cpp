@@ -11,12 +11,13 @@ namespace {
 
 // m, rad or a slope: step of each number of phi (see Derivatives) for finite differences
 constexpr double kStepOfPlace = 1e-5;
-// Step of two-point differences, as a share of the step of the four-point formula. With this step the differences are
+// Step of central differences of second order, as a share of FittedDirections::step. With this step the differences are
 // exact to 1e-10.
 constexpr double kShareOfStep = 0.02;
 
 /// [9 x (numbers + places)] The derivatives of the remaining displacement with respect to theta, the fitted numbers of
-/// the errors, and to phi, the numbers of the device's frame and of the target.
+/// the errors, and to phi, the numbers of the device's frame and of the target. at: errors at which the derivatives are
+/// taken.
 Matrix left_derivatives(ExactMachine& machine, std::span<const double> pose, std::span<const double> drive_at,
                         const Vector& at, const Corrected& corrected, const Knowledge& known) {
   const Eigen::Index k = known.theta.size();

@@ -19,14 +19,13 @@ Eigen::Index axis_of(std::size_t component) { return static_cast<Eigen::Index>(c
 
 Vector3 three(const Vector& numbers, std::size_t first) { return numbers.segment<3>(static_cast<Eigen::Index>(first)); }
 
-/// The numbers of the places of the measuring device and of the target (phi) as vectors and matrices; see Measurement
-/// for the symbols.
+/// The numbers phi of the measuring device and of the target, as vectors and matrices; see Measurement for the symbols.
 struct Places {
   Vector3 moved = Vector3::Zero();            ///< translation tau, m
   Matrix3 turn = Matrix3::Identity();         ///< rotation matrix E(rho)
   Vector3 plane = Vector3::Zero();            ///< offset c (m) and slopes a and b
-  Vector3 offset = Vector3::Zero();           ///< offset of the target, in the platform's axes
-  Matrix3 target_turn = Matrix3::Identity();  ///< rotation of the target's axes
+  Vector3 offset = Vector3::Zero();           ///< offset of the target in the platform's axes, m
+  Matrix3 target_turn = Matrix3::Identity();  ///< rotation matrix of the target's axes
 };
 
 Places places_of(const Vector& phi, Frame frame, Target target) {
@@ -63,12 +62,12 @@ Vector rigid_motion(const std::vector<Vector3>& from, const std::vector<Vector3>
   return motion;
 }
 
-/// The measured value that these displacements give.
+/// The value that is measured at these displacements, SI.
 double value_of(const MeasuredValue& value, const std::vector<Placement>& nominals,
                 const std::vector<Displacement>& displacements, const Places& places) {
   const Placement& nominal = nominals[value.row];
   const Displacement& displacement = displacements[value.row];
-  // The displacement of the measured point (P or the tool point) at a pose, before the frame is considered.
+  // The displacement of the measured point (the target at P or at the tool point) at a pose, in the base frame.
   const auto moved = [&](std::size_t row, bool is_tip) -> Vector3 {
     const Displacement& by = displacements[row];
     const Vector3 arm = is_tip ? Vector3(nominals[row].tip - nominals[row].origin) : Vector3(Vector3::Zero());

@@ -10,9 +10,9 @@ namespace poesy::calibration {
 
 /// The kind of quantity that a value measures.
 enum class Measured {
-  deviation,  ///< a component of the platform's displacement from its commanded pose
+  deviation,  ///< a component (kComponents) of the platform's displacement from the commanded pose
   actual,     ///< a coordinate of P or of the tool point
-  distance    ///< the distance between the places of the tool point (of P if there is no tool) at two poses
+  distance    ///< the distance between the positions of the tool point (of P if there is no tool) at two poses
 };
 
 /// A measured value.
@@ -20,9 +20,9 @@ struct MeasuredValue {
   Measured what;              ///< kind of quantity
   std::size_t row;            ///< index of the pose in the list of poses
   std::size_t other = 0;      ///< index of the second pose, for a distance
-  std::size_t component = 0;  ///< index in kComponents, for a deviation or an actual coordinate
+  std::size_t component = 0;  ///< index in kComponents, unless a distance is measured
   double value = 0.0;         ///< measured value, SI
-  double sd = 0.0;            ///< standard deviation, SI
+  double sd = 0.0;            ///< standard deviation of the measured value, SI
 };
 
 /// What is unknown about the place of the measuring device, and the numbers that describe it. `height`: an offset c (m)
@@ -33,8 +33,8 @@ enum class Frame { known, height, plane, rigid };
 /// platform's axes. `point`: an offset (m). `rigid`: an offset and a rotation vector (rad) of the target's axes.
 enum class Target { known, point, rigid };
 
-std::size_t numbers_of(Frame frame);    ///< The number of unknowns of a frame.
-std::size_t numbers_of(Target target);  ///< The number of unknowns of a target.
+std::size_t numbers_of(Frame frame);    ///< The number of entries of phi for a frame.
+std::size_t numbers_of(Target target);  ///< The number of entries of phi for a target.
 
 /// A pose at which a machine is measured.
 struct MeasuredPose {
@@ -57,7 +57,7 @@ class Measurement {
 
   std::size_t size() const { return values_.size(); }                              ///< The number of measured values.
   std::size_t places() const { return numbers_of(frame_) + numbers_of(target_); }  ///< The number of entries of phi.
-  /// What is unknown about the device's place.
+  /// What is unknown about the place of the measuring device.
   Frame frame() const { return frame_; }
   /// The measured values with their kinds.
   const std::vector<MeasuredValue>& values() const { return values_; }
@@ -68,21 +68,22 @@ class Measurement {
   /// Replaces the measured values (SI) by those of another machine at the same poses.
   void set_measured(const Vector& values);
 
-  /// The displacements at all poses with these errors (all errors of the model, SI); none if a machine is not solved.
+  /// The displacements at all poses [poses] of the machine with these errors (all errors of the model, SI); none if it
+  /// is not solved at a pose.
   std::optional<std::vector<Displacement>> displacements(const Vector& errors) const;
-  /// The displacements at all poses for each column of errors [all errors x machines], SI. Empty for a machine that is
-  /// not solved at every pose.
+  /// [machines][poses] The displacements of the machines with these errors [all errors x machines], SI. Empty for a
+  /// machine that is not solved at every pose.
   std::vector<std::vector<Displacement>> displacements_of_solved(const Matrix& errors) const;
-  /// The displacements at all poses for each column of errors [all errors x machines], SI; none if any machine is not
-  /// solved.
+  /// [machines][poses] The displacements of the machines with these errors [all errors x machines], SI; none if any
+  /// machine is not solved at a pose.
   std::optional<std::vector<std::vector<Displacement>>> displacements(const Matrix& errors) const;
-  /// [values] The values that are measured at these displacements [poses], SI. phi: numbers of the frame and
-  /// of the target, see the class.
+  /// [values] The values that are measured at these displacements [poses], SI. phi: numbers of the frame and of the
+  /// target (see Measurement).
   Vector values_of(const std::vector<Displacement>& displacements, const Vector& phi) const;
 
-  /// The numbers phi of the places at which a fit begins: the frame that best maps the nominal points to the measured
-  /// ones (Kabsch 1976), and a known target. Zero unless the frame is `rigid` and at least three points were measured
-  /// in all three coordinates.
+  /// The numbers phi at which a fit begins. They are 0, except for a frame `rigid` if at least three points were
+  /// measured in all three coordinates: its numbers then map the nominal points to the measured ones with the least sum
+  /// of squares (Kabsch 1976).
   Vector start() const;
 
  private:

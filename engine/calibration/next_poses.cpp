@@ -7,15 +7,15 @@ namespace {
 
 using linalg::Matrix;
 
-constexpr double kTie = 1e-9;  // gains count as equal if their relative difference is smaller
+constexpr double kTie = 1e-9;  // two gains count as equal if their relative difference is below this
 
 double log_determinant(const Matrix& positive) {
   if (positive.rows() == 0) return 0.0;
   return 2.0 * linalg::cholesky_root(positive).diagonal().array().log().sum();
 }
 
-/// The log-determinant of the Schur complement of the last rows and columns, which belong to the numbers not in
-/// `fitted`.
+/// The logarithm of the determinant of the information about the first `fitted` numbers, after all other numbers were
+/// fitted (Schur complement).
 double log_information(const Matrix& information, Eigen::Index fitted) {
   const Eigen::Index others = information.rows() - fitted;
   return log_determinant(information) - log_determinant(information.bottomRightCorner(others, others));

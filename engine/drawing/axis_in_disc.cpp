@@ -10,7 +10,7 @@ namespace {
 using std::numbers::pi;
 
 /// The probability that two uniform points of the unit disc are closer than s (MathWorld, Disk Line Picking). For small
-/// s, the closed form loses digits to cancellation; the series is exact there to a relative error of 1e-12.
+/// s, the closed form loses digits by cancellation; a series is used there, whose relative error is below 1e-12.
 double share_below(double s) {
   constexpr double kSmall = 0.003;
   const double square = s * s;

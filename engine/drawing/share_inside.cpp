@@ -28,8 +28,8 @@ double integral(const F& f, double from, double to) {
 }
 
 /// The probability that both ends of an axis are within a distance k of their nominal places. Each coordinate of an end
-/// has standard deviation 1. correlation: that of the same coordinate at both ends. Given one end, the other end is
-/// normal about `correlation` times the first one.
+/// has standard deviation 1. correlation: between the same coordinate of both ends. If the displacement of one end is
+/// given, that of the other end is normal about `correlation` times the given one.
 double ends_inside(double k, double correlation, bool one_direction) {
   const double rest = std::sqrt(std::max(0.0, (1.0 - correlation) * (1.0 + correlation)));
   if (rest < 1e-6) return one_direction ? in_interval(k) : in_disc(k);
@@ -52,10 +52,10 @@ double ends_inside(double k, double correlation, bool one_direction) {
       0.0, k);
 }
 
-/// The probability that all extreme points of a plane are at most `half` above or below their nominal places. This is
-/// so if |z| plus the largest lift is at most `half`, where z is the displacement of the plane's middle, and the
-/// largest lift is that of the extreme point which the tilt raises most. middle: standard deviation of z. tilt:
-/// standard deviation of each of the two lift errors. Lengths are in m.
+/// The probability that all extreme points of a plane face are at most `half` above or below their nominal places. This
+/// holds if |z| plus the largest lift is at most `half`. Here z is the displacement of the middle of the face, and the
+/// largest lift is that of the extreme point that the tilt raises most. middle: standard deviation of z. tilt: standard
+/// deviation of each of the two lift errors. All lengths in m.
 double plane_inside(FeatureKind kind, double half, double middle, double tilt) {
   const auto density = [&](double lift) {
     const double x = lift / tilt;

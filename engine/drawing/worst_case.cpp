@@ -14,19 +14,18 @@ namespace poesy::drawing {
 namespace {
 
 constexpr int kStarts = 24;      ///< number of directions from which the ascent starts
-constexpr int kMostTurns = 200;  ///< largest number of steps of an ascent
-/// An ascent from a starting direction ends when the length grows by less than this share. Only the best ascent is
-/// continued until the length grows by less than kTop.
+constexpr int kMostTurns = 200;  ///< largest number of steps of one ascent
+/// An ascent ends when a step increases the length by less than this share. Only the best of all ascents is continued
+/// until a step increases the length by less than kTop.
 constexpr double kNearTop = 1e-4;
-constexpr double kTop = 1e-14;       ///< the final ascent ends when the length grows by less than this share
+constexpr double kTop = 1e-14;       ///< the final ascent ends when a step increases the length by less than this share
 constexpr int kMostRounds = 1000;    ///< largest number of rounds of weighted_median()
 constexpr double kRest = 1e-15;      ///< weighted_median() ends when the gradient is below this share of the sum of
                                      ///< weights
 constexpr double kEqual = 1e-14;     ///< costs that differ by less than this share count as equal
-constexpr double kNearRest = 1e-12;  ///< if a gradient below this share of the sum of weights does not become smaller,
-                                     ///< the rest is rounding
+constexpr double kNearRest = 1e-12;  ///< a gradient below this share of the sum of weights is rounding if it stalls
 
-/// A vector perpendicular to an axis (m). In a zone between two planes, its second component is 0.
+/// A vector perpendicular to an axis: a displacement (m) or slopes. In a zone between two planes, y is 0.
 struct Across {
   double x = 0.0;
   double y = 0.0;
@@ -57,7 +56,7 @@ void append(const Across& errors, std::size_t count, OfErrors& list) {
   if (count > 1) list.push_back(errors.y);
 }
 
-/// The point q that minimises w0 |q| + w (|q - p1| + |q - p2|), a weighted median of the origin, p1 and p2.
+/// The point q that minimises w0 |q| + w |q - p1| + w |q - p2|: the weighted median of the origin, p1 and p2.
 Across weighted_median(const Across& p1, const Across& p2, double w0, double w) {
   const std::array<Across, 3> points{Across{}, p1, p2};
   const std::array<double, 3> weights{w0, w, w};
@@ -77,7 +76,7 @@ Across weighted_median(const Across& p1, const Across& p2, double w0, double w) 
   double last = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kMostRounds; ++round) {
     Across gradient;
-    Across pulled;  // step of Weiszfeld's method, which converges slowly but never fails
+    Across pulled;  // point after a step of Weiszfeld's method, which is slow but never fails
     double inverse = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
       const Across away = q - points[k];
@@ -111,8 +110,8 @@ struct Ends {
   Across near;
 };
 
-/// The displacements of the two ends (far and near) of an axis for which far . a + near . b is largest. Each end stays
-/// in a disc of this radius, and the two displacements differ by at most `lean`.
+/// The displacements of the two ends of an axis with the largest value of far . a + near . b (scalar products). Each
+/// end stays in a disc of this radius, and the two displacements differ by at most `lean`; both in m.
 Ends extreme_ends(const Across& a, const Across& b, double radius, double lean) {
   const Ends free{radius * unit(a), radius * unit(b)};
   if ((free.far - free.near).length() <= lean) return free;
@@ -178,10 +177,10 @@ double sum_of(const OfErrors& squares, std::size_t first, std::size_t count) {
                          squares.begin() + static_cast<std::ptrdiff_t>(first + count), 0.0);
 }
 
-/// A vector in the space of a response's components. Components that the response does not have are 0.
+/// A vector with an entry for each component of a response; entries beyond its last component are 0.
 using Direction = std::array<double, 3>;
 
-/// Unit vectors from which the ascent starts, evenly spread over a half-sphere or half-circle. The other half gives the
+/// Unit vectors from which ascents start, evenly spread over a half-sphere or half-circle; opposite directions give the
 /// same lengths.
 std::vector<Direction> starts(std::size_t components) {
   if (components == 1) return {{1.0, 0.0, 0.0}};
@@ -196,14 +195,14 @@ std::vector<Direction> starts(std::size_t components) {
   return list;
 }
 
-/// A point of the ascent, which looks for the largest length of a sum of vectors, one for each feature.
+/// A point of an ascent to the largest length of the sum of the features' vectors (largest_length()).
 struct Reached {
   LargestLength top;
-  Direction direction{};  ///< direction of the sum of vectors, from which the ascent goes on
+  Direction direction{};  ///< the sum of the vectors, whose direction is that of the next step
 };
 
-/// The sum of the features' vectors, and its length, if each feature has the errors that are extreme along a direction.
-/// The direction may have any length.
+/// The sum of the features' vectors and its length, if the errors of each feature make its vector's component along
+/// `direction` as large as possible. The direction may have any length.
 Reached reached_in(const std::vector<Feature>& features, const std::vector<std::vector<OfErrors>>& slopes,
                    const Direction& direction) {
   const double size = std::hypot(direction[0], direction[1], direction[2]);
@@ -224,8 +223,8 @@ Reached reached_in(const std::vector<Feature>& features, const std::vector<std::
   return found;
 }
 
-/// Ascends to a local maximum of the length. Each step replaces the direction by the sum of vectors that is extreme
-/// along it; the ascent ends when the length grows by no more than `share`.
+/// Ascends to a local maximum of the length. Each step takes reached_in() along the present sum of vectors. The ascent
+/// ends when a step increases the length by no more than the share `share`.
 Reached ascend(const std::vector<Feature>& features, const std::vector<std::vector<OfErrors>>& slopes,
                const Direction& start, double share) {
   Reached best = reached_in(features, slopes, start);

@@ -21,13 +21,13 @@ using std::numbers::pi;
 /// Maps a uniform in [0, 1] to [-1, 1].
 double between(double u) { return 2.0 * u - 1.0; }
 
-/// The largest lift of a plane's extreme points that the zones allow, as a share of half the zone of location; at most
-/// 1.
+/// The largest lift of the extreme points of a plane face that its zones allow, divided by half the zone of location;
+/// at most 1.
 double tilt_share(const Feature& feature) {
   return feature.orientation ? std::min(1.0, feature.orientation->size / feature.location->size) : 1.0;
 }
 
-/// The point of the square |x| + |y| = size at the share u of its perimeter, counted from (size, 0) towards (0, size).
+/// The point on the square |x| + |y| = size at the share u of its perimeter, measured from (size, 0) towards (0, size).
 std::array<double, 2> on_square(double size, double u) {
   const double way = 4.0 * u;
   const auto side = static_cast<int>(way);
@@ -48,13 +48,14 @@ std::array<double, 2> on_circle(double radius, double u) {
   return {radius * std::cos(2.0 * pi * u), radius * std::sin(2.0 * pi * u)};
 }
 
-/// A tilt of a plane whose extreme points have this lift. u: direction of the tilt, as a share of a full turn.
+/// The two lift errors of a plane face whose extreme points have this lift. u: direction of the tilt, as a share of a
+/// full turn.
 std::array<double, 2> tilt_of_plane(FeatureKind kind, double lift, double u) {
   return kind == FeatureKind::rectangle ? on_square(lift, u) : on_circle(lift, u);
 }
 
 bool axis_is_inside(const Feature& feature, std::span<const double> middle, std::span<const double> lean) {
-  double length = 0.0;  // squared length; `near` and `far` are the squared displacements of the two ends
+  double length = 0.0;  // squared length of the lean; near, far: squared displacements of the two ends
   double near = 0.0;
   double far = 0.0;
   for (std::size_t k = 0; k < lean.size(); ++k) {
@@ -166,8 +167,8 @@ ZoneDraws::Errors ZoneDraws::uniform_axis(const Errors& u) const {
   const double radius = 0.5 * feature_.location->size;
   const double most = std::min(2.0, feature_.orientation ? feature_.orientation->size / radius : 2.0);
   if (feature_.one_direction) {
-    // The density of the lean falls linearly, because the range of middles that keep both ends inside becomes shorter
-    // linearly.
+    // The density of |lean| decreases linearly, because the range of the middle in which both ends are inside becomes
+    // shorter linearly.
     const double share = std::abs(between(u[1])) * most * (1.0 - 0.25 * most);
     const double lean = 2.0 * share / (1.0 + std::sqrt(1.0 - share));
     return {radius * between(u[0]) * (1.0 - 0.5 * lean), std::copysign(radius * lean, u[1] - 0.5)};

@@ -15,9 +15,9 @@ namespace {
 using std::numbers::pi;
 using std::numbers::sqrt2;
 
-/// The density of a coordinate before the zones truncate it: normal or constant. Not normalised.
+/// The density of an error before the zones cut it off: normal or constant. It is not normalised.
 struct Density {
-  double sigma = 0.0;  ///< standard deviation of the normal (m); 0: the density is constant
+  double sigma = 0.0;  ///< standard deviation of a normal density, m; 0 for a constant density
 
   double at(double x) const { return sigma > 0.0 ? std::exp(-0.5 * (x / sigma) * (x / sigma)) : 1.0; }
   /// The integral of the density over [-half, half].
@@ -31,11 +31,11 @@ struct Density {
   }
 };
 
-/// Integrals of a density over all middles and tilts with which a feature is within its zones.
+/// Integrals of a density over those middles and tilts of a feature with which it is inside its zones.
 struct Integrals {
-  double one = 0.0;
-  double middle = 0.0;  ///< integral of density times squared middle, summed over its coordinates
-  double tilt = 0.0;    ///< integral of density times squared tilt, summed over its coordinates
+  double one = 0.0;     ///< integral of the density
+  double middle = 0.0;  ///< integral of the density times the sum of the squared errors of the middle
+  double tilt = 0.0;    ///< integral of the density times the sum of the squared tilt errors
 };
 
 template <class F>
@@ -53,10 +53,10 @@ Integrals integrals(const F& f, double end) {
   return {one_of(&Integrals::one), one_of(&Integrals::middle), one_of(&Integrals::tilt)};
 }
 
-/// Integrates over the middles of an axis with this lean whose two ends stay in a disc. These middles fill a lens
-/// between two arcs.
+/// For an axis with this lean, integrates over all displacements of the middle with which both ends stay in a disc.
+/// They fill a lens between two arcs.
 Integrals over_lens(const Density& middle, double radius, double lean) {
-  const auto at = [&](double angle) {  // integrand at a point of an arc of the lens
+  const auto at = [&](double angle) {  // integrand at an angle on an arc of the lens
     const double across = radius * std::sin(angle);
     const double along = std::max(0.0, radius * std::cos(angle) - 0.5 * lean);
     const double here = radius * std::cos(angle) * middle.at(across);
@@ -68,7 +68,7 @@ Integrals over_lens(const Density& middle, double radius, double lean) {
           2.0 * integral([&](double angle) { return at(angle).middle; }, 0.0, most), 0.0};
 }
 
-/// Integrates over the middles of one coordinate within [-half, half].
+/// Integrates over the displacement of the middle in one direction, from -half to half.
 Integrals over_interval(const Density& middle, double half) { return {middle.mass(half), middle.square(half), 0.0}; }
 
 /// Integrates over all tilts of a rectangle with |lift_x| + |lift_y| = lift. Returns the integral of the density, and
@@ -80,15 +80,16 @@ std::pair<double, double> rectangle_at(const Density& tilt, double lift) {
   return {weight, tilt.at(larger) * (larger * larger * tilt.mass(larger) + tilt.square(larger))};
 }
 
-/// Integrates over all tilts of this length, in all their directions. Returns the integral of the density, and the
-/// integral of the density times the squared tilt.
+/// Integrates over all directions of a tilt of this length; for a rectangle, `length` is the lift of the extreme
+/// points. Returns the integral of the density, and the integral of the density times the sum of the squared tilt
+/// errors.
 std::pair<double, double> tilt_at(const Feature& feature, const Density& tilt, double length) {
   if (feature.kind == FeatureKind::rectangle) return rectangle_at(tilt, length);
   const double weight = (feature.one_direction ? 1.0 : length) * tilt.at(length);
   return {weight, weight * length * length};
 }
 
-/// Integrates over all middles with which a feature of this tilt stays in its zone of location.
+/// Integrates over all displacements of the middle with which a feature of this tilt stays in its zone of location.
 Integrals middles_at(const Feature& feature, const Density& middle, double tilt) {
   if (!feature.location) return {1.0, 0.0, 0.0};
   const double half = 0.5 * feature.location->size;
@@ -96,7 +97,7 @@ Integrals middles_at(const Feature& feature, const Density& middle, double tilt)
   return feature.one_direction ? over_interval(middle, half - 0.5 * tilt) : over_lens(middle, half, tilt);
 }
 
-/// The largest tilt that the zones allow: the lean of an axis, or the lift of a plane's extreme points.
+/// The largest tilt that the zones allow, m: lean of an axis, or lift of the extreme points of a plane face.
 double largest_tilt(const Feature& feature) {
   const bool is_axis = feature.kind == FeatureKind::axis;
   const double by_location = feature.location ? (is_axis ? 1.0 : 0.5) * feature.location->size : HUGE_VAL;
@@ -104,8 +105,8 @@ double largest_tilt(const Feature& feature) {
   return std::min(by_location, by_orientation);
 }
 
-/// The standard deviations of the errors of an axis or a plane, whose middle and tilt have these densities within the
-/// zones and 0 outside.
+/// The standard deviations of the errors of an axis or a plane face, if middle and tilt have these densities inside the
+/// zones and density 0 outside.
 FeatureSigmas cut(const Feature& feature, const Density& middle, const Density& tilt) {
   const auto at = [&](double length) {
     const auto [weight, square] = tilt_at(feature, tilt, length);
@@ -121,9 +122,9 @@ FeatureSigmas cut(const Feature& feature, const Density& middle, const Density& 
   return found;
 }
 
-/// The ratio of standard deviations of a normal coordinate with and without inspection, which rejects a point of n
-/// coordinates if its distance is above k standard deviations. The ratio of mean squares is that of chi-square
-/// probabilities with n + 2 and n degrees of freedom.
+/// The standard deviation of a normal coordinate after an inspection, divided by that before. The inspection rejects a
+/// point with n coordinates if its distance from 0 is above k standard deviations. The ratio of the mean squares is
+/// that of two chi-square probabilities, with n + 2 and n degrees of freedom.
 double inspected_share(double n, double k) {
   const auto below = [&](double degrees) { return cdf(boost::math::chi_squared(degrees), k * k); };
   return std::sqrt(below(n + 2.0) / below(n));

@@ -11,16 +11,15 @@ namespace {
 
 using std::numbers::sqrt2;
 
-/// The standard deviation of each error that tilts a feature, for a zone of orientation of width 1. With it, the
-/// tilt displaces an extreme point (an end of an axis, a corner of a plane) with the standard deviation 1/2, half the
-/// width of the zone.
+/// The standard deviation of each tilt error, divided by the width of the zone of orientation, if half the zone is one
+/// standard deviation of the displacement of an extreme point (an end of an axis, a corner of a plane face).
 double tilt_of_orientation(FeatureKind kind) {
   if (kind == FeatureKind::axis) return 1.0;
   return kind == FeatureKind::round ? 0.5 : 0.5 / sqrt2;
 }
 
-/// The standard deviation of the middle in a zone of location, if the tilt is limited by a zone of orientation of this
-/// width.
+/// The standard deviation of the middle (m) in a zone of location, if a zone of orientation of this width limits the
+/// tilt. sigmas: half a zone in standard deviations.
 double middle_beside(double location, double orientation, double sigmas) {
   return std::sqrt((location - orientation) * (location + orientation)) / (2.0 * sigmas);
 }

@@ -18,11 +18,11 @@ namespace {
 /// The largest nominal size that kSteps covers, mm.
 constexpr double kLargest = 500.0;
 
-/// How far the zones of shafts are below the nominal size, for sizes up to and including `up_to`. The zone of a hole H
-/// begins at the nominal size; the zone of a shaft h ends there.
+/// How far the zones of shafts d to g are below the nominal size, for sizes up to and including `up_to`. (The zone of a
+/// hole H begins at the nominal size, and that of a shaft h ends there.)
 struct DistanceStep {
   double up_to;                      ///< largest nominal size, mm
-  std::array<double, 4> micrometre;  ///< distances of the classes d, e, f, g
+  std::array<double, 4> micrometre;  ///< distances of the classes d, e, f, g, micrometres
 };
 
 /// Fundamental deviations of ISO 286-1:2010, Table 4, without their sign: all are negative.
@@ -40,7 +40,7 @@ constexpr std::array<DistanceStep, 13> kSteps{{{3, {20, 14, 6, 2}},
                                                {400, {210, 125, 62, 18}},
                                                {500, {230, 135, 68, 20}}}};
 
-/// Throws an exception that quotes the text and says what is wrong with it.
+/// Throws std::invalid_argument with the text in quotes, followed by the problem.
 [[noreturn]] void refuse(std::string_view text, const std::string& problem) {
   throw std::invalid_argument("'" + printable(text) + "' " + problem);
 }
@@ -74,7 +74,7 @@ NominalSize nominal_size(std::string_view text) {
   return {metres, rest};
 }
 
-/// The grade from the digits of a zone: "01" to "18".
+/// The grade from the digits of a tolerance class: "01", "0", "1" to "18"; none for other texts.
 std::optional<ItGrade> grade_of(std::string_view digits) {
   if (digits == "01") return ItGrade::it01;
   if (digits == "0") return ItGrade::it0;
@@ -85,15 +85,15 @@ std::optional<ItGrade> grade_of(std::string_view digits) {
   return ItGrade{static_cast<int>(ItGrade::it1) + number - 1};
 }
 
-/// The distance of a shaft's zone below the nominal size, m. letter: d to h.
+/// The distance from the nominal size down to the zone of a shaft, m. letter: d to h.
 double distance_of(char letter, double metres) {
   if (letter == 'h') return 0.0;
-  const double size = metres * 1e3 * (1.0 - 1e-12);  // rounding may put a size in metres just above a step
+  const double size = metres * 1e3 * (1.0 - 1e-12);  // a size converted to m may be above a step by rounding
   const auto step = std::ranges::find_if(kSteps, [&](const DistanceStep& one) { return size <= one.up_to; });
   return step->micrometre[static_cast<std::size_t>(letter - 'd')] / 1e6;
 }
 
-/// The limits of one tolerance class, such as "h6". text: the whole text, for messages.
+/// The limits of one tolerance class, such as "h6", for a nominal size in m. text: the user's whole text, for messages.
 SizeLimits limits_of(std::string_view zone, double metres, std::string_view text) {
   const char letter = zone.empty() ? ' ' : zone.front();
   if (letter != 'H' && (letter < 'd' || letter > 'h')) {

@@ -25,11 +25,11 @@ struct Fit {
 
 /// The limits of a nominal size with its tolerance class, such as "217 h6". The size is in millimetres unless a unit of
 /// length follows the number: "0.5 in H7". The known classes are holes H and shafts d, e, f, g, h (ISO 286-1:2010,
-/// Tables 2 to 5) of sizes up to 500 mm, in the grades that ISO 286-1 has for the size. Throws std::invalid_argument
-/// with a clause that says what is wrong and what is known: "'217 k6' ...".
+/// Tables 2 to 5) of sizes up to 500 mm, in the grades that ISO 286-1 has for the size. Throws std::invalid_argument;
+/// what() is a clause with the problem and the known classes: "'217 k6' has no zone of this table ...".
 SizeLimits size_limits(std::string_view text);
 
-/// The fit of a hole and a shaft, such as "8 H7/g6". Units, known classes and failures are those of size_limits().
+/// The fit of a hole and a shaft, such as "8 H7/g6". Units, known classes and exceptions are those of size_limits().
 Fit fit(std::string_view text);
 
 }  // namespace poesy

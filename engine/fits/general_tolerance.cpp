@@ -40,10 +40,10 @@ constexpr std::array<LengthStep<3>, 4> kSymmetry{
 
 constexpr std::array<LengthStep<3>, 1> kRunout{{{3000, {0.1, 0.2, 0.5}}}};
 
-/// The entry of a table (m) for a length (m) and a class; none if there is no entry.
+/// The tolerance (m) in a table for a length (m) and a class; none if the table has no such entry.
 template <std::size_t kClasses>
 std::optional<double> value(std::span<const LengthStep<kClasses>> table, double length, std::size_t of) {
-  const double size = length * 1e3 * (1.0 - 1e-12);  // rounding may put a size in metres just above a step
+  const double size = length * 1e3 * (1.0 - 1e-12);  // a size converted to m may be above a step by rounding
   if (!(size > 0.0)) return std::nullopt;
   for (const LengthStep<kClasses>& step : table) {
     if (size > step.up_to) continue;

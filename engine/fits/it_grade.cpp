@@ -7,7 +7,7 @@ namespace poesy {
 namespace {
 
 constexpr std::size_t kTabulated = 13;  // number of grades in the table: IT01 to IT11
-constexpr std::size_t kFive = 5;        // from IT7 on, a zone five grades coarser is ten times as wide
+constexpr std::size_t kFive = 5;        // grades from IT12 on: ten times the width of the grade five steps finer
 
 /// The widths of the tolerance zones for sizes up to and including `up_to`.
 struct SizeStep {
@@ -45,7 +45,7 @@ std::string it_grade_name(ItGrade grade) {
 }
 
 std::optional<double> it_grade_width(double nominal_size, ItGrade grade) {
-  const double size = nominal_size * 1e3 * (1.0 - 1e-12);  // rounding may put a size in metres just above a step
+  const double size = nominal_size * 1e3 * (1.0 - 1e-12);  // a size converted to m may be above a step by rounding
   if (!(size > 0.0) || (grade >= ItGrade::it14 && size <= 1.0)) return std::nullopt;
   auto place = static_cast<std::size_t>(grade);
   double micrometre = 1.0;

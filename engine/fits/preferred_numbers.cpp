@@ -20,14 +20,15 @@ constexpr std::size_t stride(PreferredSeries series) {
   return series == PreferredSeries::r20 ? 1 : series == PreferredSeries::r10 ? 2 : 4;
 }
 
-/// hundredths x 10^(power - 2), with the bits of the decimal number as it is written.
+/// hundredths x 10^(power - 2), as the double nearest to that decimal number.
 double decimal(int hundredths, int power) {
   const int exponent = power - 2;
   const double size = std::pow(10.0, std::abs(exponent));
   return exponent < 0 ? hundredths / size : hundredths * size;
 }
 
-/// The power of ten of the value's first digit. A value that is below a power of ten only by rounding gets that power.
+/// The largest power of ten that is not above the value, as an exponent. A value that is below a power of ten only by
+/// rounding counts as that power.
 int power_of(double value) {
   POESY_EXPECTS(value > 0.0 && std::isfinite(value));
   return static_cast<int>(std::floor(std::log10(value * (1.0 + kRounding))));

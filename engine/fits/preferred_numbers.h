@@ -3,13 +3,13 @@
 #include <optional>
 #include <string_view>
 
-/// Preferred numbers of ISO 3: the steps of sizes in workshops and catalogues.
+/// Preferred numbers of ISO 3, in whose steps sizes in workshops and catalogues are often graded.
 namespace poesy {
 
 /// The basic series R5, R10 and R20 with 5, 10 and 20 numbers in each decade.
 enum class PreferredSeries { r5, r10, r20 };
 
-std::string_view name(PreferredSeries series);  ///< "R5", "R10" or "R20".
+std::string_view name(PreferredSeries series);  ///< The name of a series: "R5", "R10" or "R20".
 /// The series with this name; none if there is no such series.
 std::optional<PreferredSeries> find_preferred_series(std::string_view name);
 

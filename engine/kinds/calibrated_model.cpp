@@ -27,7 +27,7 @@ class CalibratingEvaluator final : public Evaluator {
  private:
   MachineCalibrator calibrator_;
   std::unique_ptr<calibration::CorrectedEvaluator> corrected_;
-  Matrix errors_;  ///< errors of the last block, [all errors x samples]
+  Matrix errors_;  ///< [all errors x samples] errors of the last block, SI; `corrected_` has their controllers
 };
 
 }  // namespace

@@ -8,10 +8,10 @@
 namespace poesy {
 
 /// The model of calibrated machines. Each set of errors is a machine that is calibrated from measurements without
-/// noise. Responses that state the displacement of the platform then state the displacement that remains after
-/// calibration. An outcome depends only on the pose and the errors. An evaluator fits again only when the errors of a
-/// block of samples differ from those of the block before it, so a caller should solve the same errors at one pose
-/// after another.
+/// noise. Responses for the displacement of the platform give the displacement that remains after calibration. An
+/// outcome depends only on the pose and the errors. An evaluator fits again only when the errors of a block of samples
+/// differ from those of the block before it, so a caller should solve the same errors at all poses before it solves
+/// other errors.
 class CalibratedModel final : public ForwardingModel {
  public:
   /// model: the model for which the calibration was made. The calibration must outlive this object.
@@ -24,9 +24,9 @@ class CalibratedModel final : public ForwardingModel {
   const MachineCalibration* calibration_;
 };
 
-/// The model that a study solves if its errors are given, or if it varies one error at a time: `model`, or a
-/// CalibratedModel if the study has [analysis.calibration]. Keeps references to the study and the model. Throws
-/// InputError as the constructor of MachineCalibration does.
+/// The model for a study that states its errors, or that varies one error at a time: `model`, or a CalibratedModel if
+/// the study has [analysis.calibration]. The result keeps references to the study and the model. Throws InputError as
+/// the constructor of MachineCalibration does.
 std::shared_ptr<const Model> studied_model(const Study& study, const Model& model, const PoseSet& poses);
 
 }  // namespace poesy

@@ -25,12 +25,12 @@ using calibration::Placement;
 using calibration::Vector;
 using calibration::Vector3;
 
-/// Two values of a coordinate count as equal if they differ by less than this: a share of the machine's reach for a
-/// length, rad for an angle.
+/// Two values of a coordinate count as equal if they differ by less than this: rad for an angle, a share of the
+/// mechanism's reach for a length.
 constexpr double kSameCoordinate = 1e-9;
 constexpr const char* kDrives = "actuators";
 
-/// A coordinate of the platform as a function of the platform's position and rotation (its placement).
+/// A coordinate of the platform as a function of the platform's placement (position and rotation).
 using PlaceCoordinate = std::function<double(const Placement&)>;
 
 /// The angles (rad) of three rotations about the axes i, j and k (`order`) whose product R_i R_j R_k is the rotation
@@ -46,9 +46,9 @@ Vector3 angles_in_order(const Matrix3& R, const std::array<Eigen::Index, 3>& ord
   return angles;
 }
 
-/// All functions of the placement that may be a coordinate of this dimension. For lengths: the components of the
-/// position of the platform's origin. For angles: the components of the rotation vector, and the angles of rotations
-/// about the axes in any order.
+/// All functions of the placement that are tried for a coordinate of this dimension. For lengths: the components of the
+/// position of the platform's origin. Otherwise: the components of the rotation vector, and the angles of rotations
+/// about the three axes in any order.
 std::vector<PlaceCoordinate> possible_coordinates(Dimension dimension) {
   std::vector<PlaceCoordinate> list;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -65,8 +65,8 @@ std::vector<PlaceCoordinate> possible_coordinates(Dimension dimension) {
   return list;
 }
 
-/// Poses at which the values of coordinates are compared: reachable poses spread over the workspace, and the first
-/// poses of the study.
+/// Poses at which the values of coordinates are compared: up to four reachable poses spread over the workspace, and up
+/// to four poses of the list `poses`.
 std::vector<std::vector<double>> test_poses(const Model& model, const PoseSet& poses) {
   constexpr std::array<double, 4> kShares{0.37, 0.61, 0.44, 0.72};
   const ModelDescription& description = model.description();
@@ -130,7 +130,8 @@ Placement moved(const Placement& nominal, const Displacement& by) {
           nominal.tip + by.moved + (by.turn - Matrix3::Identity()) * (nominal.tip - nominal.origin)};
 }
 
-/// The number of drives of a mechanism. Actuated joints of its sketch that name the same drive count as one drive.
+/// The number of drives of a mechanism. Actuated joints that name the same drive count as one drive. 0 if the model has
+/// no sketch.
 std::size_t count_drives(const Model& model) {
   std::set<std::string> named;
   std::size_t alone = 0;

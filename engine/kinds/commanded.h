@@ -10,20 +10,20 @@
 
 namespace poesy {
 
-/// Makes a function that computes, from the displacement of the platform, the errors of the coordinates that the
-/// study's controller commands. Each coordinate is recognised by its values at test poses: they must be equal to a
-/// component of the platform's position or to an angle of its rotation. Throws InputError if a coordinate is not
-/// recognised, or if the drives do not fit: their number is not that of the pose coordinates, or the drives of one
-/// motor do not move together.
+/// Makes a function that computes the errors of the coordinates that the study's controller commands, from the
+/// displacement of the platform. A coordinate is recognised by its values at test poses: they must equal a component of
+/// the platform's position, or an angle of its rotation, at every test pose. Throws InputError if a coordinate is not
+/// recognised, or if the drives do not match: they are not as many as the pose coordinates, or the drives of one motor
+/// do not move together.
 calibration::CoordinateError commanded_coordinates(const Study& study, const Model& model,
                                                    const calibration::ExactMachine& machine, const PoseSet& poses);
 
-/// The drives of a study, with their units: the first joint of each motor if the study names motors, otherwise the
-/// drives of the model.
+/// The drives of a study, with their units. If the study names motors, a motor is listed by its first joint; otherwise
+/// the drives are those of the model.
 std::vector<NamedUnit> drives_of(const Study& study);
 
-/// [drives] The displacement of each drive of the perfect mechanism at pose `drive_at`, minus that at `pose`. NaN for a
-/// drive that moves several joints.
+/// [drives] The displacement (rad or m) of each drive of the perfect mechanism at pose `drive_at`, minus its
+/// displacement at `pose`. NaN for a drive that is not a single joint.
 std::vector<double> drive_shift(const Model& model, const std::vector<NamedUnit>& drives, std::span<const double> pose,
                                 std::span<const double> drive_at);
 

@@ -14,18 +14,18 @@
 namespace poesy {
 namespace {
 
-/// The kind of study that can judge a yield.
+/// The kind of study that judges yields.
 const StudyKind& kind_with_yields() {
   return (*std::ranges::find_if(kinds(), [](const Kind* kind) { return kind->study.ask_yield != nullptr; }))->study;
 }
 
-/// Whether machines are calibrated from measurements at poses that a file lists.
+/// Whether the study calibrates machines, and a file lists the poses at which they are measured.
 bool measures_at_file(const Study& study) {
   const auto& calibration = study.analysis.calibration;
   return calibration != nullptr && calibration->poses && calibration->poses->select == PoseSelection::Select::file;
 }
 
-/// Writes points with these coordinates as a table of poses.
+/// Writes points with these coordinates as the table `file` in a folder, with a line for each point.
 void write_points(const std::string& folder, const std::string& file, const std::vector<PoseCoordinate>& coordinates,
                   const PoseSet& points) {
   const auto title = [](const PoseCoordinate& named) {

@@ -20,16 +20,16 @@ using drawing::OfErrors;
 
 namespace axis {
 using namespace poesy::axis;
-using Side = Axis<"side">;  ///< Whether a step of an error is up or down.
+using Side = Axis<"side">;  ///< The direction of a step of an error: Slopes::kUp or Slopes::kDown.
 }  // namespace axis
 
 constexpr std::string_view kNone = "-";
 
-/// The step of the central differences, in standard deviations of the error. With it, curvature and rounding each
-/// change a slope by at most a share of 1e-9.
+/// The step of the central differences, in standard deviations of the error. Curvature and rounding then each change a
+/// slope by at most about 1e-9 of its value.
 constexpr double kDifferenceStep = 1.0 / 16.0;
 
-/// The features whose errors scatter (in a tolerance zone or a clearance) and all vary in the study.
+/// The features with a tolerance zone or a clearance whose errors all vary in the study.
 std::vector<Feature> varied_features(const Study& study) {
   const auto varies = [&](FactorIndex error) {
     return std::ranges::find(study.analysis.factors, error) != study.analysis.factors.end();
@@ -80,8 +80,8 @@ class Slopes {
     evaluator_->evaluate(samples, {found_.all(), status_.all(), iterations_, {}});
   }
 
-  /// The slopes of a response, which must have a sign, with respect to the errors of a feature. NaN for an error whose
-  /// steps were not solved at the pose.
+  /// The slopes of a response, which must have a sign, with respect to the errors of a feature. NaN for an error if a
+  /// solve with its steps failed at the pose.
   OfErrors of(std::size_t response, std::size_t feature) const {
     OfErrors list;
     for (std::size_t e = first_[feature]; e < first_[feature + 1]; ++e) {
@@ -105,7 +105,7 @@ class Slopes {
 };
 
 /// The responses with a sign from which a response is computed: the response itself, or its components if it is a norm.
-/// Empty if the response is never negative without being a norm (Response::has_no_sign), or has more than three
+/// Empty if the response has no sign and is not a norm (Response::has_no_sign), or if it has more than three
 /// components.
 std::vector<std::size_t> components(const ModelDescription& model, std::size_t response) {
   const Response& one = model.responses[response];
@@ -134,7 +134,7 @@ std::string datums_of(const std::optional<Zone>& zone) {
   return zone && !zone->datums.empty() ? zone->datums : std::string(kNone);
 }
 
-/// A result with the description of the features, in which all effects are NaN.
+/// A result that describes the features, and whose effects are still NaN.
 DrawingResult described(const StudyRun& run, const std::vector<Feature>& features) {
   DrawingResult made;
   const std::size_t count = features.size();
@@ -172,8 +172,8 @@ DrawingResult described(const StudyRun& run, const std::vector<Feature>& feature
   return made;
 }
 
-/// [features] The variances (SI) of the feature's errors, if the study gives one of them a distribution of its own,
-/// such as a measured one. Empty for a feature that scatters only as its zones state.
+/// [features] The variances (SI) of each feature's errors, if the study gives one of them another distribution than the
+/// zones do, such as a measured one. Empty for a feature whose errors all scatter as the zones state.
 std::vector<OfErrors> own_variances(const Study& study, const std::vector<Feature>& features) {
   const auto by_zones = distributions_by_zones(study);
   std::vector<OfErrors> variances(features.size());
@@ -191,7 +191,7 @@ std::vector<OfErrors> own_variances(const Study& study, const std::vector<Featur
   return variances;
 }
 
-/// The mean square of a response under errors with these variances. squares: squared slope of the response for each
+/// The mean square of a response to errors with these variances (SI). squares: squared slope of the response for each
 /// error.
 drawing::ZoneSquares own_squares(const OfErrors& variances, const OfErrors& squares) {
   double sum = 0.0;
@@ -199,19 +199,18 @@ drawing::ZoneSquares own_squares(const OfErrors& variances, const OfErrors& squa
   return {.even = sum, .worst = sum};
 }
 
-/// The effects of features on one response, over the poses so far.
+/// The effects of features on one response, SI, over the poses so far.
 struct OverPoses {
   std::vector<double> squares;     ///< [features] sum over the poses of the mean square that each feature causes
-  double worst = -1.0;             ///< largest worst case over the poses
+  double worst = -1.0;             ///< largest worst case over the poses; -1 before the first pose
   std::vector<double> at_worst{};  ///< [features] contribution of each feature to that worst case
 };
 
-/// How features scatter: as their zones state, or with variances of their own.
+/// How features scatter: as their zones state, or with the variances of other distributions.
 struct FeatureScatter {
   drawing::ZoneScatter in_zones;
   std::vector<OfErrors> own;  ///< [features] see own_variances()
-  /// [features] Standard deviations of the errors as the zones state them; empty members for a feature with variances
-  /// of its own.
+  /// [features] Standard deviations of the errors as the zones state them; unset for a feature with variances in `own`.
   std::vector<drawing::FeatureSigmas> sigmas;
 };
 
@@ -225,7 +224,7 @@ FeatureScatter scatter_of(const Study& study, const std::vector<Feature>& featur
 }
 
 /// Adds the effects at pose m to the sums of response r, and sets the result at this pose. slopes:
-/// [features][components of the response].
+/// [features][components of the response] slopes with respect to the feature's errors.
 void add_pose(const std::vector<Feature>& features, const FeatureScatter& scatter,
               const std::vector<std::vector<OfErrors>>& slopes, std::size_t r, std::size_t m, OverPoses& sums,
               DrawingResult& result) {

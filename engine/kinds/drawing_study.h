@@ -7,9 +7,9 @@
 
 namespace poesy {
 
-/// The effect of a drawing's features on the responses, to first order (DrawingResult). The slopes of the responses
-/// with respect to the features' errors are central differences with a step of a sixteenth of an error's standard
-/// deviation. None if the study draws no errors, or if no feature scatters.
+/// The effect of the features of the mechanism's drawing on the responses, to first order (DrawingResult). Slopes of
+/// the responses are central differences; the step is a sixteenth of the error's standard deviation. None if the study
+/// draws no errors, or if no feature scatters.
 std::optional<DrawingResult> drawing_result(const StudyRun& run);
 
 }  // namespace poesy

@@ -11,7 +11,7 @@ namespace {
 using calibration::Matrix;
 using calibration::Vector;
 
-constexpr double kUsualLength = 1e-3;  // m: scale of a fitted length if an error in it has no tolerance
+constexpr double kUsualLength = 1e-3;  // m: scale of a fitted length that contains an error without a tolerance
 
 Eigen::Index position(std::size_t at) { return static_cast<Eigen::Index>(at); }
 
@@ -21,7 +21,7 @@ Matrix covariance_of(const ErrorModel& errors, const std::vector<FactorIndex>& f
   for (std::size_t n = 0; n < factors.size(); ++n) covariance(position(n), position(n)) = sd(n) * sd(n);
   for (const CorrelatedErrors& block : errors.correlated) {
     const Eigen::Map<const Matrix> correlation(block.correlation.data(), position(block.factors.size()),
-                                               position(block.factors.size()));  // symmetric
+                                               position(block.factors.size()));  // a symmetric matrix
     for (std::size_t i = 0; i < factors.size(); ++i) {
       for (std::size_t j = 0; j < factors.size(); ++j) {
         const auto a = std::ranges::find(block.factors, factors[i]);
@@ -70,7 +70,7 @@ std::vector<FactorIndex> fitted_with_tolerance(const CalibrationTable& table) {
 }
 
 /// The matrix F (FittedDirections) of these fitted errors, with the scales, difference steps and prior of its columns.
-/// known: the mean and the covariance that follow from the tolerances; scales and prior are computed from these.
+/// known: mean and covariance from the tolerances, from which scales and prior are computed.
 FittedColumns made_columns(std::span<const FittedErrors> fit, const CalibrationTable& table,
                            const ToleranceKnowledge& known, const calibration::ExactMachine& machine) {
   FittedColumns columns;

@@ -9,25 +9,28 @@
 
 namespace poesy {
 
-/// The mean and the covariance of errors before any measurement, from the tolerances in [errors]. Correlated errors
-/// have the correlation of their normal scores.
+/// The mean and the covariance of errors before any measurement, from the tolerances in [errors]. For correlated
+/// errors, the correlation is that of their normal scores.
 struct ToleranceKnowledge {
-  std::vector<FactorIndex> factors;  ///< [errors] the errors, ascending
+  std::vector<FactorIndex> factors;  ///< [errors] indices of the errors, ascending
   calibration::Vector mean;          ///< [errors] mean of each error, SI
-  calibration::Matrix root;          ///< [errors x errors] matrix L for which L^T L is the inverse of the covariance
+  calibration::Matrix root;          ///< [errors x errors] matrix L, where L^T L is the inverse of the covariance
 };
 
-/// The mean and covariance of these errors before any measurement. factors: ascending, each with a tolerance.
+/// The mean and the covariance of these errors before any measurement. factors: indices of the errors, ascending; each
+/// error has a tolerance.
 ToleranceKnowledge tolerance_knowledge(const ErrorModel& errors, std::vector<FactorIndex> factors);
 
-/// The directions, scales and difference steps of the fitted errors, and the prior. A fitted error is one of the
-/// numbers that are fitted: a single error, or a weighted sum of errors. Each has a column in the matrix F of
+/// The directions, scales and difference steps of the fitted errors, and the prior. A fitted error is one number of the
+/// fit: a single error, or a combination of errors with fixed weights. It has a column in the matrix F of
 /// FittedDirections.
 struct FittedColumns {
-  /// Directions of the fitted errors. The scale of a fitted error is the standard deviation that the tolerances give
-  /// it. If one of its errors has no tolerance, the scale is 1 mm for a length, and 1 mm / reach for an angle.
+  /// Directions of the fitted errors. The scale of a fitted error is the standard deviation that follows from the
+  /// tolerances. If one of its errors has no tolerance, the scale is 1 mm for a length, otherwise 1 mm / reach of the
+  /// mechanism.
   calibration::FittedDirections directions;
-  calibration::Prior prior;     ///< empty if the study does not use tolerances as a prior
+  /// Prior knowledge from the tolerances; fitted_columns() leaves it empty if the study uses none.
+  calibration::Prior prior;
   bool has_tolerances = false;  ///< whether the scales of all columns follow from tolerances
 };
 
@@ -35,8 +38,9 @@ struct FittedColumns {
 FittedColumns fitted_columns(const Study& study, const CalibrationTable& table,
                              const calibration::ExactMachine& machine);
 
-/// The columns of all errors that may differ from 0. First comes one column for each error with a tolerance. Then comes
-/// one column for each fitted error that contains errors without a tolerance, with the weights of only these errors.
+/// The columns of all errors that may differ from 0: first one for each error with a tolerance, then one for each
+/// fitted error that contains errors without a tolerance. The latter has weights only for the errors without a
+/// tolerance.
 FittedColumns all_columns(const Study& study, const CalibrationTable& table, const calibration::ExactMachine& machine);
 
 }  // namespace poesy

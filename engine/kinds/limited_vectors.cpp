@@ -7,7 +7,7 @@
 namespace poesy {
 namespace {
 
-/// The largest number of sums that the fits at all poses may keep in memory.
+/// The largest number of sums, 8 bytes each, that the linear fits at all poses may keep in memory.
 constexpr std::size_t kMostSums = std::size_t{4} << 20U;
 
 std::size_t components_of(const std::vector<Detail>& details) {
@@ -26,7 +26,7 @@ LimitedVectors::LimitedVectors(const Plan& plan, const Model& model, const Analy
   for (const ResponseLimit& limit : analysis.limits) {
     const Response& response = description.responses[limit.response];
     const bool is_centred = limit.allowed.is_spread() && !response.is_magnitude();
-    // The mean over the poses is not known to a fit at a single pose.
+    // If errors are drawn anew at each pose, poses are fitted one by one, so the mean over the poses is not known.
     if (is_centred && !plan.per_pose().empty()) continue;
     LimitedVector vector{limit.response, limit.allowed, response.components, rows_, 0, is_centred};
     const std::size_t numbers = model.norm_of_details(limit.response, plan.poses()[PoseIndex(0)]).size();
@@ -41,8 +41,7 @@ LimitedVectors::LimitedVectors(const Plan& plan, const Model& model, const Analy
     vectors_.push_back(std::move(vector));
   }
   const std::size_t errors = plan.factors().size();
-  // Number of products of two errors whose sums the fit at a pose keeps. Without errors that machines draw anew at each
-  // pose, it keeps none.
+  // Number of products of two errors whose sums the fit at a pose keeps; none if no error is drawn anew at each pose.
   const std::size_t products = plan.per_pose().empty() ? 0 : errors * errors;
   if (plan.poses().size() * (rows_ * (errors + 1) + products) <= kMostSums) return;
   vectors_.clear();

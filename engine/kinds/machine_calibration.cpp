@@ -26,8 +26,8 @@ using calibration::Measured;
 using calibration::MeasuredValue;
 using calibration::Vector;
 
-constexpr std::size_t kAngles = 3;          // components of a displacement that are angles and come before the lengths
-constexpr std::size_t kFirstOtherBody = 2;  // position in Sketch::bodies of the first body after base and platform
+constexpr std::size_t kAngles = 3;          // number of components of a displacement that are angles; they come first
+constexpr std::size_t kFirstOtherBody = 2;  // index in Sketch::bodies of the first body after base and platform
 
 Eigen::Index position(std::size_t at) { return static_cast<Eigen::Index>(at); }
 
@@ -46,7 +46,7 @@ PoseSet poses_of_calibration(const Study& study, const Model& model, const PoseS
   return asked ? select_poses(*asked, model).poses : poses;
 }
 
-/// The components of the displacement that a word of the key `measured` stands for.
+/// The components of the displacement that a word of the key `measured` names, as indices in kComponents.
 std::vector<std::size_t> components_of(const std::string& word, const Study& study) {
   static constexpr std::array<std::size_t, 6> kPose{3, 4, 5, 0, 1, 2};
   if (word == kMeasuredPose) return {kPose.begin(), kPose.end()};
@@ -59,9 +59,9 @@ std::vector<std::size_t> components_of(const std::string& word, const Study& stu
                    "measure x, y, z, theta_x, theta_y, theta_z, tip_x, tip_y, tip_z, \"pose\" or \"distance\"");
 }
 
-/// A text for a message about the combinations of fitted errors that the measurement does not determine. A single
-/// combination is written out, " (zero_1 + 0.93 rods ...)", unless it mixes lengths and angles; then the text is empty.
-/// For several combinations, the text is their number.
+/// A part of a message about the combinations of fitted errors that the measurement does not determine. A single
+/// combination is written out, " (zero_1 + 0.93 rods ...)"; the text is empty if it mixes lengths and angles. For
+/// several combinations, the text is their number.
 std::string unseen_text(const calibration::Confounded& part, const Matrix& projector, const Vector& scale,
                         const std::vector<FittedErrors>& fit) {
   if (part.directions != 1) return " (" + counted(part.directions, "direction", "directions") + ")";
@@ -83,7 +83,7 @@ std::string unseen_text(const calibration::Confounded& part, const Matrix& proje
 
 double stated_noise(const CalibrationTable& table, std::string_view what) {
   const auto found = std::ranges::find(table.noise, what, &StatedNoise::what);
-  // `found` is not null: a study without this noise was refused on reading.
+  // `found` is not the end, because reading refuses a study that does not state this noise.
   return found->sd / std::sqrt(static_cast<double>(table.repeats));
 }
 
@@ -159,8 +159,8 @@ void MachineCalibration::set_weights() {
     throw InputError(place, "noise is 0, so nothing can be weighed against the tolerances",
                      "state the noise, or write prior = \"none\"");
   }
-  // Without noise, all values get the same standard deviation kEqual (m or rad). The fit has converged when a step
-  // changes the values by less than a small share of kEqual.
+  // Without noise, all values get the same standard deviation kEqual (m or rad). It must be small, because the fit has
+  // converged when a step changes the values by less than a small share of it.
   constexpr double kEqual = 1e-6;
   weights_.setConstant(kEqual);
 }

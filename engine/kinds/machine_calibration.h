@@ -17,43 +17,45 @@
 
 namespace poesy {
 
-/// How the machines of a study are calibrated: at which poses they are measured, with which noise, and which errors are
-/// fitted. Immutable, and shared by all threads.
+/// How the machines of a study are calibrated: the poses at which they are measured, the noise, and the errors that are
+/// fitted. An object is immutable, and all threads share it.
 class MachineCalibration {
  public:
-  /// Keeps references to the study and the model. poses: those of the study. Precondition: `analysis.calibration` is
-  /// set. Throws InputError if the measurements do not determine the fitted errors, or if a pose cannot be measured.
+  /// Keeps references to the study and the model. poses: poses of the study. Precondition: `analysis.calibration` is
+  /// set. Throws InputError if the machines cannot be calibrated, for instance because the measurements do not
+  /// determine the fitted errors.
   MachineCalibration(const Study& study, const Model& model, const PoseSet& poses);
 
-  /// This calibration for the machines of another study, which differs only in the sizes of its errors and in its seed.
-  /// Only the scales of the fitted errors and the prior depend on the sizes. The result keeps a reference to the other
-  /// study.
+  /// This calibration for the machines of another study. Precondition: the studies differ only in the sizes of the
+  /// errors and in the seed. Only the scales of the fitted errors and the prior depend on the sizes. The result keeps a
+  /// reference to `study`.
   MachineCalibration of(const Study& study) const;
 
-  const Study& study() const { return *study_; }                   ///< The study.
-  const Model& model() const { return *model_; }                   ///< The mechanism.
-  std::span<const double> noise() const { return noise_; }         ///< [values] Noise of each measured value, SI.
+  const Study& study() const { return *study_; }  ///< The study.
+  const Model& model() const { return *model_; }  ///< The model of the mechanism.
+  /// [values] Standard deviation of the noise of each measured value, SI.
+  std::span<const double> noise() const { return noise_; }
   std::size_t values() const { return values_.size(); }            ///< The number of measured values.
   std::size_t measured_poses() const { return measured_.size(); }  ///< The number of poses that are measured.
   std::size_t fitted() const { return table().fit.size(); }        ///< The number of fitted errors.
   /// The fitted errors, as directions in the space of all errors.
   const calibration::FittedDirections& directions() const { return columns_.directions; }
-  /// Prior knowledge of the errors; empty: none.
+  /// Prior knowledge of the fitted errors; empty if there is none.
   const calibration::Prior& prior() const { return columns_.prior; }
-  /// [values] Standard deviation by which the residual of each measured value is divided: the noise, or equal values if
-  /// all noise is 0.
+  /// [values] Number by which the residual of each measured value is divided, SI: the standard deviation of its noise,
+  /// or 1e-6 for all values if all noise is 0.
   const calibration::Vector& weights() const { return weights_; }
-  /// The polynomials from which the derivatives of the measured values are computed at any estimate of the errors.
+  /// The polynomials that give the derivatives of the measured values at any estimate of the errors.
   const calibration::Expansion& expansion() const { return *expansion_; }
 
-  /// A measurement at the calibration's poses, whose values are not yet set and are 0. machine: solves the machines
-  /// that are measured.
+  /// A measurement at the poses of the calibration; its measured values are 0 until they are set. machine: solves the
+  /// machines that are measured; it must outlive the result.
   calibration::Measurement measurement(calibration::ExactMachine& machine) const;
   /// An evaluator of calibrated machines, for one thread. It computes the model's own responses, without those that the
   /// study defines.
   std::unique_ptr<calibration::CorrectedEvaluator> corrected() const;
-  /// An evaluator of machines that have these controllers after calibration. It computes all responses, also those that
-  /// the study defines.
+  /// An evaluator of machines with these controllers. It computes all responses, including those that the study
+  /// defines.
   std::unique_ptr<Evaluator> evaluator(calibration::Controllers controllers) const;
 
  private:
@@ -80,14 +82,16 @@ class MachineCalibration {
 /// The calibration of a study's machines; none if the study has no [analysis.calibration].
 std::optional<MachineCalibration> machine_calibration(const Study& study, const Model& model, const PoseSet& poses);
 
-/// A text for `poesy check` on the work that the calibration adds to the solves of a study. each: "machine" or "case".
+/// A text for `poesy check`: the work that the calibration adds to the solves of a study. each: the word for what is
+/// calibrated, "machine" or "case".
 std::string calibration_cost_text(const MachineCalibration& calibration, std::string_view each);
 
 /// [all errors x samples] The values of all errors in the samples of a block, SI.
 calibration::Matrix all_errors(const SampleBlock& samples);
 
-/// Calibrates machines: computes measured values of each, with noise, and fits its errors. Owns the scratch memory of
-/// one thread. The result for a machine depends only on the study, the machine's number and its errors.
+/// Calibrates simulated machines: computes the measured values of each machine, adds noise, and fits the errors. Owns
+/// the scratch memory of one thread. The result for a machine depends only on the study, the machine's number and its
+/// errors.
 class MachineCalibrator {
  public:
   /// The calibration must outlive this object and must not be moved.
@@ -103,8 +107,8 @@ class MachineCalibrator {
   calibration::Controllers with_noise(const calibration::Matrix& errors, const calibration::Matrix& noise);
 
  private:
-  /// [measured values x machines] The noise of each value of each machine. Each value has a stream of random numbers of
-  /// its own.
+  /// [measured values x machines] The noise of each value of each machine, SI. Each value has its own stream of random
+  /// numbers.
   calibration::Matrix noise(std::span<const std::size_t> machines) const;
 
   const MachineCalibration* calibration_;

@@ -22,7 +22,7 @@ namespace {
 constexpr std::array kAll{&kSensitivityKind, &kIdentificationKind, &kEvaluateKind, &kMonteCarloKind,
                           &kSobolKind,       &kAllocationKind,     &kCouplingKind};
 
-/// The order of the keys of [analysis] in the reference of study files; a key that is not listed comes last.
+/// The order of the keys of [analysis] in the reference of study files. Keys that are not listed here come last.
 constexpr std::array<std::string_view, 31> kKeys{
     "kind",      "factors",   "samples", "draws",        "calibrated", "conf_level", "background", "reference",
     "linearity", "quantiles", "groups",  "second_order", "design",     "replicates", "pose_share", "cases",
@@ -43,7 +43,7 @@ const StudyKinds& study_kinds() {
 }
 
 const Kind* find_kind(std::string_view name) {
-  for (const Kind* kind : {&kCalibrationKind, &kSweepKind}) {  // kinds of results that are not kinds of studies
+  for (const Kind* kind : {&kCalibrationKind, &kSweepKind}) {  // results have these kinds, but studies do not
     if (name == kind->study.name) return kind;
   }
   const auto* const found = std::ranges::find(kAll, name, [](const Kind* kind) { return kind->study.name; });

@@ -11,9 +11,10 @@
 /// Functions that write, read and export the results of every kind of study.
 namespace poesy {
 
-/// Writes the result of a study. found: the result in the kind's own type; it is moved, and its lists are freed as they
-/// are written. drawing: effects of a drawing's features, or null. The file is written under a temporary name, synced
-/// and renamed, so it appears complete or not at all. Throws FileError, and then an existing file is unchanged.
+/// Writes the result of a study. found: the result, as the type that the study's kind defines; it is moved, and its
+/// lists are freed as they are written. drawing: effects of the features of the mechanism's drawing, or null. The file
+/// is written under a temporary name, synced and renamed, so it appears complete or not at all. Throws FileError; an
+/// existing file is then unchanged.
 void write_result(const std::string& path, const Study& study, const SelectedPoses& poses, std::any found,
                   const RunFacts& facts, const DrawingResult* drawing = nullptr);
 
@@ -22,8 +23,8 @@ void write_result(const std::string& path, const Study& study, const SelectedPos
 StoredResult as_stored(const Study& study, const SelectedPoses& poses, std::any found,
                        const DrawingResult* drawing = nullptr);
 
-/// Reads a result file. Throws FileError if the file is not a result, or has another major version. A file that was
-/// changed after it was written can be read; the result records the change.
+/// Reads a result file. Throws FileError if the file is not a result, or if its format has another major version. A
+/// file that was changed after it was written can be read; StoredResult records that it was changed.
 StoredResult read_result(const std::string& path);
 
 /// Writes every table of a result as CSV into a folder and returns the paths; see engine/result/result_file.h.

@@ -24,8 +24,8 @@ std::string study_reference() { return study_reference(study_kinds()); }
 
 namespace {
 
-/// Reads a study and its mechanism from these texts and adds the poses. path: the file that contains the texts, for
-/// messages.
+/// Reads a study and its mechanism from these texts, and returns them with the poses. path: the file that contains the
+/// texts, for messages.
 StoredStudy stored_study(const std::string& text, const std::string& mechanism, SelectedPoses poses,
                          const std::string& path, const Catalog& catalog) {
   constexpr const char* kOther = "use the poesy that wrote it";

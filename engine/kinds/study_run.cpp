@@ -49,7 +49,7 @@ void check_shard(const Shard& shard, const Study& study, std::size_t poses) {
 }
 
 Outlook outlook(const Study& study, const Model& model, const PoseSet& poses) {
-  // Bytes of a result file without numbers: about 90 datasets and groups of HDF5 with their attributes.
+  // Bytes of a result file that contains no numbers yet: about 90 HDF5 datasets and groups, with their attributes.
   constexpr std::size_t kEmptyFile = 55'000;
   Outlook expected = kind_of(study).run.outlook(study, model, poses);
   expected.memory.file += kEmptyFile + resolved_text(study).size();

@@ -11,7 +11,7 @@
 
 namespace poesy {
 
-/// Runs a study of any kind at these poses. model: the model of the study's mechanism. Returns nothing if the run was
+/// Runs a study of any kind at these poses. model: model of the study's mechanism. Returns nothing if the run was
 /// stopped, for a shard, and on ranks other than rank 0.
 std::optional<StudyResult> run_study(const Study& study, const Model& model, const PoseSet& poses,
                                      const RunOptions& options = {});
@@ -19,10 +19,10 @@ std::optional<StudyResult> run_study(const Study& study, const Model& model, con
 /// Runs a study at the poses that it selects, with the model that it names. Throws InputError as select_poses() does.
 std::optional<StudyResult> run_study(const Study& study, const RunOptions& options = {});
 
-/// Estimates the work of a run without doing it. The result keeps references to all arguments.
+/// Estimates the work of a run without running the study. The result keeps references to all arguments.
 Outlook outlook(const Study& study, const Model& model, const PoseSet& poses);
 
-/// Throws InputError unless the study can be divided into this many shards at this many poses.
+/// Throws InputError if the study, at this number of poses, cannot be divided into as many shards as `shard.count`.
 void check_shard(const Shard& shard, const Study& study, std::size_t poses);
 
 }  // namespace poesy

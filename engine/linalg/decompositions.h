@@ -4,14 +4,15 @@
 #include <cstddef>
 #include <optional>
 
-/// Decompositions of small dense matrices as plain functions. Each Eigen template takes the compiler seconds, so only
-/// this folder instantiates them. Matrices of fixed size are passed without a copy if they are column-major.
+/// Decompositions of small dense matrices as plain functions. Only this folder instantiates Eigen's templates for
+/// decompositions, because each of them takes seconds to compile. Matrices of fixed size are passed without a copy if
+/// they are column-major.
 namespace poesy::linalg {
 
 using Matrix = Eigen::MatrixXd;                ///< a matrix of any size
 using Vector = Eigen::VectorXd;                ///< a vector of any size
-using ConstMatrix = Eigen::Ref<const Matrix>;  ///< a matrix, or a block of one, that is only read
-using ConstVector = Eigen::Ref<const Vector>;  ///< a vector, or a segment of one, that is only read
+using ConstMatrix = Eigen::Ref<const Matrix>;  ///< a matrix, or a block of one, as an argument that is only read
+using ConstVector = Eigen::Ref<const Vector>;  ///< a vector, or a segment of one, as an argument that is only read
 
 /// The decomposition A = U diag(values) V^T with orthogonal U [rows x rows] and V [columns x columns]. If A has more
 /// columns than rows, the last columns of V belong to singular values of zero.
@@ -21,24 +22,26 @@ struct SingularValueDecomposition {
   Matrix V;       ///< right singular vectors; empty unless computed
 };
 
-/// Functions for the singular value decomposition, by Jacobi rotations, of a matrix with at least one row and one
-/// column.
+/// The singular value decomposition of A by Jacobi rotations, or only parts of it. Precondition: A has at least one row
+/// and one column.
 /// @{
 Vector singular_values(const ConstMatrix& A);
-SingularValueDecomposition right_singular_vectors(const ConstMatrix& A);  ///< values and V; U stays empty
+SingularValueDecomposition right_singular_vectors(const ConstMatrix& A);  ///< values and V; U is empty
 SingularValueDecomposition singular_value_decomposition(const ConstMatrix& A);
 /// @}
 
-/// The number of singular values above threshold times the largest; 0 for a matrix without columns.
+/// The rank: the number of singular values above threshold times the largest one; 0 for a matrix without columns.
 std::size_t rank(const ConstMatrix& A, double threshold);
 
 /// The x with the smallest norm that minimises |A x - b|. Pivots below threshold times the largest count as 0.
 Vector least_squares(const ConstMatrix& A, const ConstVector& b, double threshold);
 
-/// The X whose columns minimise |A x - b|. Precondition: the columns of A are independent.
+/// The matrix X whose columns x minimise |A x - b| for the columns b of B. Precondition: the columns of A are
+/// independent.
 Matrix least_squares(const ConstMatrix& A, const ConstMatrix& B);
 
-/// The Moore-Penrose inverse [columns x rows]. Pivots below rounding error, relative to the largest, count as 0.
+/// The Moore-Penrose inverse [columns x rows] of A. Pivots that are not above rounding error, relative to the largest
+/// one, count as 0.
 Matrix pseudo_inverse(const ConstMatrix& A);
 
 /// An orthonormal basis [rows x (rows - rank)] of the space orthogonal to all columns of A. Pivots below threshold
@@ -55,12 +58,12 @@ struct RangeAndComplement {
   Matrix complement;  ///< [rows x (rows - rank)]
 };
 
-/// Orthonormal bases of the range of A and of its complement, for a matrix whose rank is known. Pivots beyond the rank
-/// count as 0.
+/// Orthonormal bases of the range of A and of its complement, for a matrix whose rank is known. Pivots after the first
+/// `rank` ones count as 0.
 RangeAndComplement range_and_complement(const ConstMatrix& A, std::size_t rank);
 
-/// The upper triangular R [columns x columns] with |R y| = |A y| for every y. If A has fewer rows than columns, the
-/// last rows of R are 0.
+/// The upper triangular matrix R [columns x columns] with |R y| = |A y| for every vector y. If A has fewer rows than
+/// columns, the last rows of R are 0.
 Matrix upper_triangle(const ConstMatrix& A);
 
 /// The upper triangular U with U^T U = W. Precondition: W is symmetric and positive definite.
@@ -75,7 +78,7 @@ struct EigenDecomposition {
   Matrix vectors;  ///< orthonormal columns, in the order of the values
 };
 
-/// The decomposition of a symmetric matrix, and a function for its eigenvalues only.
+/// The eigenvalues and eigenvectors of A, or only the eigenvalues. Precondition: A is symmetric.
 /// @{
 EigenDecomposition eigen_decomposition(const ConstMatrix& A);
 Vector eigenvalues(const ConstMatrix& A);  ///< The eigenvalues, smallest first.
@@ -95,7 +98,7 @@ class LuFactors6 {
   Matrix6 inverse() const;                ///< The inverse of A. Precondition: A is not singular.
   double determinant() const;             ///< The determinant of A.
   Vector6 pivots() const { return factors_.diagonal(); }  ///< The diagonal of U.
-  const Places& row_places() const { return places_; }    ///< The number of the row to which P moves each row of A.
+  const Places& row_places() const { return places_; }    ///< For each row of A, the row to which P moves it.
 
  private:
   Matrix6 factors_;  ///< L below the diagonal (the diagonal of L is 1), and U on and above it

@@ -4,10 +4,10 @@
 
 namespace poesy::linalg {
 
-/// Minimises a sum of squares by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963). No step increases the sum.
-/// So the iteration stays in the valley where it began, even if the squares cannot all vanish and undamped steps would
-/// jump. Returns true as soon as a step is shorter than `shortest`, and false after 200 steps. The type Problem has
-/// these members:
+/// Minimises a sum of squares by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963). Steps that would increase
+/// the sum are not made, so the iteration stays in the valley of the sum in which it began, even if the least sum there
+/// is not 0 and undamped steps would jump away. Returns true as soon as a step is shorter than `shortest`, and false
+/// after 200 steps. The type Problem has these members:
 ///
 ///     double sum_of_squares()               the sum at the present point
 ///     double try_step(double damping)       computes a Gauss-Newton step, with the diagonal of the normal

@@ -11,11 +11,11 @@
 
 namespace poesy {
 
-/// The geometric kind of a feature of a part. `rectangle` and `round` are plane faces with that outline, `distance` is
-/// a length of the part.
+/// The geometric kind of a feature of a part. `rectangle` and `round` are plane faces with a rectangular or circular
+/// outline; `distance` is a length of the part.
 enum class FeatureKind { axis, rectangle, round, point, distance };
 
-/// The property of a feature that a tolerance zone limits.
+/// The property of a feature that a zone (a tolerance of a drawing) limits.
 enum class ZoneClass {
   location,     ///< the position of the feature, and with it the orientation
   orientation,  ///< only the orientation
@@ -43,7 +43,7 @@ struct Feature {
   std::string name;   ///< name of the feature, such as "rail_1"
   std::string label;  ///< name on the drawing, the same in all limbs, such as "rail"
   std::size_t limb;   ///< limb of the part, counted from 1
-  std::size_t frame;  ///< frame of the limb that the errors of the feature displace
+  std::size_t frame;  ///< index of the limb's frame that the errors of the feature displace
   FeatureKind kind;   ///< geometric kind of the feature
   /// Size in m: length of an axis; two sides of a rectangle; diameter of a round face; nominal size of a distance, 0 if
   /// unknown.
@@ -56,8 +56,8 @@ struct Feature {
   std::vector<FactorIndex> tilt = {};
   std::optional<Zone> location = {};     ///< zone that limits the location; for a distance, the tolerance
   std::optional<Zone> orientation = {};  ///< zone that limits only the orientation
-  /// Clearance of the axis of a pin that is loose in its bore. Such a feature has no zones. The place of the pin in the
-  /// bore changes from pose to pose.
+  /// The clearance of a pin whose axis is the feature, if the pin is loose in its bore; none for other features. A
+  /// feature with a clearance has no zones. The position of the pin in the bore changes from pose to pose.
   std::optional<Clearance> clearance = {};
 
   std::vector<FactorIndex> errors() const;  ///< All errors: first those that move the feature, then those that turn it.
@@ -70,7 +70,7 @@ struct ZoneTraits {
   std::string_view sign;  ///< symbol on a drawing, UTF-8
 };
 
-/// The properties of all types of zones, in the order of ISO 1101.
+/// The properties of all types of zones: first zones of location, then of orientation, then of size (ZoneTraits::of).
 const std::vector<ZoneTraits>& zone_traits();
 
 /// The properties of zones with this key. Precondition: zone_traits() has the key.

@@ -23,9 +23,9 @@ namespace poesy {
 /// One scalar manufacturing or assembly error of a mechanism. It is zero for a perfect part.
 struct Factor {
   std::string name;         ///< name in files, such as "delta_1_0_x"
-  Dimension dimension;      ///< length (m) or angle (rad)
+  Dimension dimension;      ///< length (m), angle (rad) or number
   std::size_t limb;         ///< limb, counted from 1 as in the literature
-  std::size_t frame;        ///< frame of the limb to which the error belongs
+  std::size_t frame;        ///< index of the limb's frame to which the error belongs, from 0 at the base
   std::string description;  ///< explanation for users
   std::string axis = {};    ///< "x", "y" or "z" if the error is a component of a vector; empty for a scalar
 };
@@ -37,7 +37,7 @@ struct FactorSet {
   std::vector<FactorIndex> factors;  ///< indices of the factors in the model's list, ascending
 };
 
-/// A scalar that the model computes for every pose and sample.
+/// A scalar that the model computes for every pose and sample, such as a displacement of the platform.
 struct Response {
   std::string name;         ///< name in result files
   Dimension dimension;      ///< length (m), angle (rad), force (N), moment (N m), energy (J) or number
@@ -49,17 +49,18 @@ struct Response {
   double mean_square_bound = 1.0;
   /// If the response is the norm of a vector of responses: indices of the components in the model's list of responses.
   std::vector<std::size_t> components = {};
-  /// True if the response is never below zero although it has no components, such as an energy.
+  /// True if the response is never below zero although it is not the norm of components; an energy is an example.
   bool has_no_sign = false;
-  /// True if the response is the difference between a value at one pose and the value at another pose of the same
-  /// machine.
+  /// True if the response is the difference between its values at two poses of the same machine, or is computed from
+  /// such a difference.
   bool is_relative = false;
 
   /// Returns true if the response is never below zero.
   bool is_magnitude() const { return has_no_sign || !components.empty(); }
 };
 
-/// A vector from which responses are computed. It is output only if a caller asks for it.
+/// A vector from which the model computes responses, such as a mismatch of two limbs. It is output only if a caller
+/// asks for it.
 struct Detail {
   std::string name;                     ///< name in result files
   std::vector<std::string> components;  ///< names of the components of the vector
@@ -86,25 +87,25 @@ struct NamedCurve {
   std::string name;         ///< name in study files
   std::string description;  ///< explanation for users
   std::size_t chart;        ///< chart of the curve: index in ModelDescription::charts
-  double start;             ///< beginning of the whole curve, s
-  double end;               ///< end of the whole curve, s
-  /// The default point that is added to the curve: chart coordinates, SI.
+  double start;             ///< time at which the curve begins, s
+  double end;               ///< time at which the curve ends, s
+  /// The point that is added to every point of the curve, unless a study states another one: chart coordinates, SI.
   std::vector<double> origin;
-  /// Returns chart coordinates (SI), relative to the origin, at a time (s).
+  /// Returns the point of the curve at a time (s): chart coordinates, SI, relative to the origin.
   std::function<std::vector<double>(double time)> at;
 };
 
-/// A joint's displacement from the home configuration.
+/// The displacement of a joint from the home configuration, as it is named in results and in limits of studies.
 struct JointDisplacement {
-  std::string name;     ///< name in result files, such as "q_1_1"
+  std::string name;     ///< name in study and result files, such as "q_1_1"
   Dimension dimension;  ///< length (m) or angle (rad)
 };
 
-/// A structural parameter that a study may change.
+/// A parameter of the mechanism's geometry, which a study may change.
 struct GeometryParameter {
   std::string name;         ///< name in study files
   Dimension dimension;      ///< length (m), angle (rad) or number
-  double published;         ///< value in the publication of the mechanism, SI
+  double published;         ///< value in the publication of the mechanism, or in its file, SI
   std::string description;  ///< explanation for users
 };
 
@@ -112,7 +113,7 @@ struct GeometryParameter {
 /// mechanism moves.
 struct DeformationMeasure {
   std::size_t response;  ///< index in the list of responses
-  double rounding;       ///< largest value that rounding alone may give, SI
+  double rounding;       ///< largest value (SI) that the response may have by rounding alone
 };
 
 using PlatformPoint = std::array<double, 3>;  ///< A point of the platform in its frame: x, y, z in m.
@@ -129,34 +130,36 @@ struct Separation {
 
 /// How results describe the separated effects (Separation) of errors.
 struct SeparationDescription {
-  std::string measure;  ///< description of the displacement by which effects are measured
-  /// [factors] Class of each error according to the literature; empty if the literature has no classes.
+  std::string measure;  ///< the displacement that measures an effect, in words: "root mean square displacement of ..."
+  /// [factors] The class of each error in the literature, such as "compensable"; an empty text if it has no class
+  /// there.
   std::vector<std::string> published;
 };
 
-/// The magnitude from which on an error makes no sense, because it is as large as a dimension of the part of the
-/// mechanism to which it belongs.
+/// The magnitude at which an error stops making sense, such as a dimension of the part that has the error, or half a
+/// turn.
 struct ErrorBound {
   double size = std::numeric_limits<double>::infinity();  ///< bound on the error's magnitude, SI
-  std::string part = {};  ///< dimension of the part that sets the bound, such as "the length of the rod"
+  std::string part = {};  ///< what sets the bound, in words: "the length of the rod", "half a turn"
 };
 
-/// The iteration that solves samples, and when it ends.
+/// How a sample is solved: the method of iteration, and the conditions that end the iteration.
 struct SolverOptions {
   /// Which iteration solves a sample.
   enum class Method {
-    newton,       ///< the model's own iteration, fast and with a large region of convergence
-    gauss_newton  ///< the published iteration
+    newton,       ///< Newton's method as the model implements it: fast, with a large region of convergence
+    gauss_newton  ///< the iteration of the mechanism's publication
   };
 
-  Method method = Method::newton;  ///< ignored by models that have only one kind of iteration
+  Method method = Method::newton;  ///< iteration to use; models with only one kind of iteration ignore it
   /// A solve has converged when no component of the residual (in some models, of the platform's motion) changes by more
-  /// than this in an iteration (rad, m). With the metric "platform", the changes of bodies and joints must be below
-  /// this times the mechanism's reach. Default 1e-15, Du et al. 2022, Section 5.1; the default of a study is
+  /// than this in an iteration (rad, m). With the metric "platform", the limit on the changes of bodies and joints is
+  /// this number times the mechanism's reach (m). Default 1e-15, Du et al. 2022, Section 5.1; the default of a study is
   /// ModelDescription::tolerance.
   double tolerance = 1e-15;
-  int max_iterations = 50;  ///< Default 50, Du et al. 2022, Section 5.1.
-  /// True if a study of one error at a time may replace solves by certified series (engine/run/series_model.h).
+  int max_iterations = 50;  ///< largest number of iterations; default 50, Du et al. 2022, Section 5.1
+  /// True if a study that varies one error at a time may replace solves by certified Chebyshev series
+  /// (engine/run/series_model.h).
   bool series = true;
 };
 
@@ -172,7 +175,7 @@ struct ModelDescription {
   std::string title;                             ///< title with its source
   std::vector<GeometryParameter> geometry;       ///< parameters that a study may change
   std::vector<PoseCoordinate> pose_coordinates;  ///< coordinates, in the order of the numbers of a pose
-  std::vector<Factor> factors;         ///< all errors; the random numbers of an error depend on its index here
+  std::vector<Factor> factors;         ///< all errors; the random numbers of an error depend on its index in this list
   std::vector<FactorSet> factor_sets;  ///< sets that a study may name; a set called "all" has every factor
   std::vector<Feature> features = {};  ///< features of parts, with the tolerances of their drawings
   std::vector<Response> responses;     ///< responses, in the order of OutcomeBlock::responses
@@ -180,30 +183,32 @@ struct ModelDescription {
   std::vector<Detail> details;  ///< additional outputs; OutcomeBlock::details has their components in this order
   std::vector<JointDisplacement> joints;  ///< all joints, in the order of Model::joint_displacements
   std::vector<double> pose_lower;         ///< lower ends of a reachable workspace, [pose coordinates], SI
-  std::vector<double> pose_upper;         ///< upper ends of the reachable workspace, [pose coordinates], SI
-  std::string workspace_note;             ///< source of the reachable workspace
-  /// Names of the choices of accuracy, from "exact" to "first-order"; the first is the default. Empty: there is no
-  /// choice.
+  std::vector<double> pose_upper;         ///< upper ends of this workspace, [pose coordinates], SI
+  std::string workspace_note;             ///< source of this workspace, for users
+  /// Names of the fidelities (accuracies of a solve) that a study may choose, such as "exact" and "first-order"; the
+  /// first is the default. Empty: there is no choice.
   std::vector<std::string> fidelities;
-  /// How a mismatch of angle is weighed against one of length. "platform": both are measured by the displacement that
-  /// they cause at points of the platform. "published": one radian counts as much as one metre at the base's origin.
-  /// Empty: the model needs no weights.
+  /// How a mismatch of angle is weighed against a mismatch of length. "platform": by the displacement that each causes
+  /// at points of the platform. "published": one radian counts as much as one metre, at the base's origin. "stiffness":
+  /// by the stiffness of joints, links and limbs. Empty: the responses combine no angles with lengths.
   std::string metric = {};
   double tolerance = SolverOptions().tolerance;     ///< default tolerance of solves
   std::vector<PoseChart> charts;                    ///< alternative coordinates of poses
   std::vector<NamedCurve> curves;                   ///< trajectories of the literature
   std::optional<SeparationDescription> separation;  ///< none: the model does not separate its errors
-  std::vector<SourceSet> sources;     ///< default sources of a coupling study; no factor is in two sources
-  std::vector<std::size_t> headline;  ///< indices of the responses that a summary shows; empty: all of them
+  std::vector<SourceSet> sources;  ///< default sources of a coupling study; no factor is in two sources
+  /// Indices of the responses that the summary of a result shows; empty: all responses.
+  std::vector<std::size_t> headline;
   /// The joints of a mechanism from a file, as lines of text for users; empty for other mechanisms.
   std::string structure = {};
-  /// Responses with a sign, for the summary of a coupling study: a norm cannot show which effects cancel. Empty: the
-  /// summary shows those of `headline`.
+  /// Indices of responses with a sign, which the summary of a coupling study shows, because a norm cannot show which
+  /// effects cancel. Empty: it shows the responses of `headline`.
   std::vector<std::size_t> signed_headline;
 
-  /// The index of the factor of this name; none if there is no such factor.
+  /// The index of the factor with this name; none if no factor has it.
   std::optional<FactorIndex> find_factor(std::string_view factor_name) const;
-  const FactorSet* find_set(std::string_view set_name) const;  ///< Null if there is no set of that name.
+  /// The factor set with this name; null if no set has it.
+  const FactorSet* find_set(std::string_view set_name) const;
 };
 
 /// A block of samples at one pose. Some factors vary and have a value of their own in each sample; the others are
@@ -214,16 +219,16 @@ struct SampleBlock {
   std::span<const FactorIndex> varied;  ///< factors that vary, each once
   std::span<const double> values;       ///< [varied x samples], row-major: all samples of the first varied factor first
   std::size_t count;                    ///< number of samples
-  /// If one factor varies: most of its values are between -range and +range, and a model may prepare for such values.
-  /// 0: the range is unknown. The range changes the outcome of a sample only by rounding. An outcome never depends on
-  /// the other samples.
+  /// If only one factor varies: most of its values are between -range and +range (SI), so a model may prepare for this
+  /// interval. 0: the range is unknown. The range changes an outcome only by rounding. The outcome of a sample never
+  /// depends on the other samples.
   double range = 0.0;
   /// The previous pose in the list of a study's poses, SI, for responses that are relative to it; empty if there is
   /// none.
   std::span<const double> previous = {};
 };
 
-/// The outcomes of a block of samples. The caller owns the memory.
+/// The outcomes of a SampleBlock, which an evaluator writes. The caller owns the memory.
 struct OutcomeBlock {
   std::span<double> responses;          ///< [responses x samples], row-major, SI; the last iterate if not converged
   std::span<SolveStatus> status;        ///< [samples] how each solve ended
@@ -232,7 +237,7 @@ struct OutcomeBlock {
   std::span<double> details;
 };
 
-/// Solves samples for one thread, and owns the thread's scratch memory. A result depends only on the arguments.
+/// Solves samples for one thread, and owns the scratch memory for it. A result depends only on the arguments.
 class Evaluator {
  public:
   virtual ~Evaluator() = default;
@@ -287,8 +292,8 @@ class Model {
   /// cannot do this.
   virtual std::unique_ptr<Evaluator> calibrated_evaluator(const SolverOptions& /*options*/) const { return nullptr; }
 
-  /// The iterations of a solve for these errors [number of factors] at a reachable pose, SI; none if the model cannot
-  /// show them.
+  /// The iterations of a solve for these errors [factors] at a reachable pose, both SI; none if the model cannot show
+  /// them.
   virtual std::optional<SolveTrace> trace(std::span<const double> /*pose*/, std::span<const double> /*errors*/,
                                           const SolverOptions& /*options*/) const {
     return std::nullopt;
@@ -307,17 +312,17 @@ class Model {
     return {};
   }
 
-  /// The matrix [K x D], SI, that maps the D components of the additional outputs (ModelDescription::details) to a
-  /// vector with K components. The norm of this vector is the response. If the response is a mean of several norms, or
-  /// the largest of them, the vector is an approximation: its norm is about as large as the response, and its mean
-  /// square is in proportion to the sum of the mean squares of these norms. The matrix is empty if there is no such
-  /// vector. Precondition: the model reaches the pose.
+  /// The matrix [K x D], row-major, SI, that maps the D components of the additional outputs
+  /// (ModelDescription::details) to a vector with K components whose norm is the response. If the response is a mean of
+  /// several norms, or the largest of them, the vector is an approximation: its norm is about as large as the response,
+  /// and its mean square is in proportion to the sum of the mean squares of these norms. The matrix is empty if there
+  /// is no such vector. Precondition: the model reaches the pose.
   virtual std::vector<double> norm_of_details(std::size_t /*response*/, std::span<const double> /*pose*/) const {
     return {};
   }
 
-  /// The parts of the effect of each error. Preconditions: the model has ModelDescription::separation and reaches the
-  /// pose.
+  /// The effect of each error at this pose (SI), separated into parts (Separation). Preconditions: the model has
+  /// ModelDescription::separation and reaches the pose.
   virtual Separation separation(std::span<const double> /*pose*/) const { return {}; }
 
   /// The largest standard deviation of a response (SI) that rounding errors of the solves may cause for an error
@@ -327,7 +332,8 @@ class Model {
   /// The largest sensible magnitude of an error; infinite by default.
   virtual ErrorBound error_bound(FactorIndex /*factor*/) const { return {}; }
 
-  /// The platform's points (its frame, m) by which the metric "platform" and corrections of the drives weigh, if any.
+  /// The points of the platform (platform frame, m) whose displacements the metric "platform" measures, and a
+  /// correction of the drives minimises; empty if the model has no such points.
   virtual std::vector<PlatformPoint> metric_points() const { return {}; }
 
   /// The mobility of the mechanism, as lines of text for users; none if it was not computed.
@@ -336,8 +342,8 @@ class Model {
   /// Remarks on the model's numbers that a reader of results should know, as sentences; none by default.
   virtual std::vector<std::string> remarks() const { return {}; }
 
-  /// A picture of the mechanism at a reachable pose (SI), or at home if the pose is empty; none if the model has no
-  /// picture.
+  /// The data for a picture of the mechanism at a reachable pose (SI), or at home if the pose is empty; none if the
+  /// model offers no picture.
   virtual std::optional<Sketch> sketch(std::span<const double> /*pose*/) const { return std::nullopt; }
 
   /// Properties of the geometry that are possible but unusual, so that they may be mistakes. Each is a clause for a
@@ -357,17 +363,17 @@ class Model {
   /// @}
 };
 
-class StudyValue;  ///< The value of a key in a study or mechanism file (engine/schema).
+class StudyValue;  ///< The value of a key in a study or mechanism file (engine/schema/keys_section.h).
 
 /// A mechanism that a study may name.
 struct CatalogEntry {
   ModelDescription description;  ///< description, with the published geometry
   /// Builds the mechanism. geometry: values of description.geometry, in that order (SI). fidelity: index in
-  /// description.fidelities, 0 if there is no choice. Throws std::invalid_argument with a clause that names the
-  /// parameter and the rule it breaks.
+  /// description.fidelities, 0 if there is no choice. Throws std::invalid_argument, whose text is a clause that names
+  /// the parameter and the rule that it breaks.
   std::function<std::unique_ptr<Model>(std::span<const double> geometry, std::size_t fidelity)> build;
-  /// An entry for the same mechanism with another metric, and the responses that belong to that metric. Entries for all
-  /// metrics form a list, which this member links. Null at the end of the list.
+  /// The next entry in a linked list of entries for the same mechanism, one for each metric, with the responses of that
+  /// metric. Null at the end of the list.
   std::shared_ptr<const CatalogEntry> other_metric = nullptr;
   /// If the description's metric is "platform": builds the mechanism with other points of the platform, at least three
   /// (in the platform's frame, m). Throws std::invalid_argument as build() does.
@@ -375,10 +381,11 @@ struct CatalogEntry {
                                        std::span<const PlatformPoint> points)>
       build_with_points = nullptr;
   std::string file = {};  ///< path of the file that describes the mechanism; empty for mechanisms of the catalog
-  /// For a mechanism from a file: the same mechanism with the loads of another table `[load]`, in all its metrics.
-  /// Throws InputError as Catalog::from_text() does.
+  /// For a mechanism from a file: returns the entry of the same mechanism with the loads of another table `[load]`,
+  /// linked to entries for all metrics. Throws InputError as Catalog::from_text() does.
   std::function<CatalogEntry(const StudyValue& load)> with_load = nullptr;
-  std::string load = {};  ///< the table `[load]` that replaces the one of the file, as TOML; empty: the file's own
+  /// The table `[load]` that replaces the table of the file, as TOML; empty: the file's table is used.
+  std::string load = {};
 };
 
 /// Finds the entry with this metric in the list that begins with `entry` and continues by other_metric. If no entry has
@@ -396,7 +403,7 @@ struct Catalog : std::vector<CatalogEntry> {
   std::string (*file_reference)() = nullptr;
 };
 
-/// The entry of this name. Upper and lower case do not matter. Null if there is none.
+/// The entry of the mechanism with this name, in upper or lower case. Null if the catalog has no such mechanism.
 const CatalogEntry* find(const Catalog& catalog, std::string_view model_name);
 
 }  // namespace poesy

@@ -38,7 +38,7 @@ std::string pose_text(const ReferencePose& reference, const ModelDescription& mo
   return text;
 }
 
-/// The user's own response as an entry of the model's list.
+/// The user's response as an entry of ModelDescription::responses.
 Response response_of(const OwnResponse& own, const ModelDescription& model) {
   Response response{own.name, own.dimension, own.description};
   if (response.description.empty()) {
@@ -64,7 +64,7 @@ Response response_of(const OwnResponse& own, const ModelDescription& model) {
 }
 
 /// Computes one of the user's responses for each sample. rows: the values of all responses [responses x samples],
-/// row-major. to: receives the values of this response [samples].
+/// row-major, of which the terms are read. to: receives the values of this response [samples].
 void form(const OwnResponse& own, std::span<const double> rows, std::span<double> to) {
   std::ranges::fill(to, 0.0);
   for (const ResponseTerm& term : own.terms) {
@@ -78,7 +78,7 @@ void form(const OwnResponse& own, std::span<const double> rows, std::span<double
   for (double& value : to) value = std::sqrt(value);
 }
 
-/// Returns the worse of two solve statuses of one machine, and `one` if both are equally bad.
+/// Returns the worse status of two solves of the same sample at different poses, and `one` if both are equally bad.
 SolveStatus worse(SolveStatus one, SolveStatus other) {
   const auto badness = [](SolveStatus status) { return solved(status) ? 0 : usable(status) ? 1 : 2; };
   return badness(other) > badness(one) ? other : one;
@@ -102,7 +102,8 @@ class OwnRows {
   std::size_t all() const { return responses_ + own_->size(); }
   /// The reference poses of the relative responses, each once. An empty pose means the previous pose.
   const std::vector<std::vector<double>>& references() const { return references_; }
-  /// The index of the previous pose in references(); none if no response is relative to it.
+  /// The index in references() of the empty pose (the previous pose); none if no response is relative to the previous
+  /// pose.
   std::optional<std::size_t> previous() const {
     const auto found = std::ranges::find_if(references_, &std::vector<double>::empty);
     if (found == references_.end()) return std::nullopt;
@@ -129,7 +130,8 @@ class OwnRows {
     }
   }
 
-  /// Computes once more the responses that are not relative to a pose themselves, because their terms may be relative.
+  /// Computes again the user's responses without a reference pose, because their terms may be responses that have one
+  /// and that subtract() has changed.
   void form_the_rest(std::span<double> rows, std::size_t samples) const {
     for (std::size_t k = 0; k < own_->size(); ++k) {
       if (!(*own_)[k].relative_to) form((*own_)[k], rows, row(rows, k, samples));
@@ -146,9 +148,8 @@ class OwnRows {
   std::vector<std::vector<double>> references_;
 };
 
-/// The samples of a block and their responses at one pose. Machines are solved at one pose after the other, so most
-/// blocks have the same samples as the block before, and the responses at a reference pose need to be computed only
-/// once.
+/// The samples of a block and their responses at one pose. The same samples are usually solved at one pose after the
+/// other, so their responses at a reference pose, once stored here, need not be computed again.
 struct SolvedBlock {
   std::vector<double> pose;
   std::vector<double> errors;
@@ -156,7 +157,7 @@ struct SolvedBlock {
   std::vector<double> values;
   std::size_t count = 0;
   double range = 0.0;
-  std::vector<double> responses;  ///< [all() x count], as if no response were relative to a pose
+  std::vector<double> responses;  ///< [OwnRows::all() x count], before reference values are subtracted
   std::vector<SolveStatus> status;
   std::vector<std::uint32_t> iterations;
 
@@ -218,7 +219,8 @@ class EvaluatorOfOwn final : public Evaluator {
     rows_->form_all(block.responses, samples.count);
   }
 
-  /// Stores this block, because responses at the next pose may be relative to it.
+  /// Stores the samples and their responses at the present pose, because responses at the next pose may be relative to
+  /// them.
   void keep(const SampleBlock& samples, const OutcomeBlock& outcomes) {
     here_.begin(samples.pose, samples);
     here_.responses.assign(outcomes.responses.begin(), outcomes.responses.end());
@@ -227,8 +229,8 @@ class EvaluatorOfOwn final : public Evaluator {
 
   std::unique_ptr<Evaluator> inner_;
   const OwnRows* rows_;
-  std::vector<SolvedBlock> there_;  ///< [reference poses] samples that were last solved at each reference pose
-  SolvedBlock here_;                ///< block at the present pose, to which the next block may be relative
+  std::vector<SolvedBlock> there_;  ///< [reference poses] the block that was last solved at each reference pose
+  SolvedBlock here_;  ///< the block at the present pose; responses of the next block may be relative to it
 };
 
 /// Throws InputError, with the place of the pose in the study, if a response is relative to a pose that the model does
@@ -273,7 +275,8 @@ class ModelOfOwn final : public ForwardingModel {
     return list;
   }
 
-  /// In the result, a response that is relative to the previous pose is NaN, because only one pose is given.
+  /// The trace of one pose. A response that is relative to the previous pose is NaN, because a trace has no previous
+  /// pose.
   std::optional<SolveTrace> trace(std::span<const double> pose, std::span<const double> errors,
                                   const SolverOptions& options) const override {
     std::optional<SolveTrace> trace = formed_trace(pose, errors, options);
@@ -294,8 +297,8 @@ class ModelOfOwn final : public ForwardingModel {
     return is_own(response) ? std::vector<double>() : ForwardingModel::norm_of_details(response, pose);
   }
 
-  /// For one of the user's responses: the sum of the rounding of its terms. The sum counts twice for a response that is
-  /// relative to another pose, because the terms at both poses count.
+  /// For one of the user's responses: the sum of |weight| x rounding over its terms. It is doubled for a response that
+  /// is relative to a reference pose, because it is the difference of values at two poses.
   double rounding(std::size_t response) const override {
     if (!is_own(response)) return ForwardingModel::rounding(response);
     const OwnResponse& own = own_[response - inner().responses.size()];

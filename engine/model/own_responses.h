@@ -13,7 +13,7 @@ namespace poesy {
 struct ResponseTerm {
   std::size_t response;  ///< index in the list of the model's responses followed by the user's earlier ones
   double weight = 1.0;   ///< factor by which the response is multiplied, SI
-  Dimension weighed_in = Dimension::number;  ///< dimension of the weight: number or length
+  Dimension weighed_in = Dimension::number;  ///< dimension of `weight`: number or length
 };
 
 /// The pose to which a response is relative: the value of the response at this pose, with the same errors, is
@@ -27,7 +27,7 @@ struct ReferencePose {
 
 /// A response that a user defines from the responses of a model.
 struct OwnResponse {
-  std::string name;                 ///< name that differs from those of the model's responses
+  std::string name;                 ///< name, different from the names of all other responses
   Dimension dimension;              ///< dimension of this response
   bool is_norm;                     ///< true: root of the sum of the squares of the terms; false: sum of the terms
   std::vector<ResponseTerm> terms;  ///< terms, at least one; each response once
@@ -38,21 +38,22 @@ struct OwnResponse {
 };
 
 /// The dimension of a term, which is a response times a weight. A weight without unit keeps the dimension of the
-/// response. If the weight is a length, the product with an angle is a length, and the product with a force is a
-/// moment. Empty for other products.
+/// response. If the weight is a length, the product with an angle or a number is a length, and the product with a force
+/// is a moment. None for other products.
 std::optional<Dimension> dimension_of(const ResponseTerm& term, const ModelDescription& model);
 
-/// The description with the user's responses appended to the list of responses. Summaries of results nevertheless show
-/// them first.
+/// The description with the user's responses appended to the list of responses, and put first among the responses that
+/// summaries show (`headline` and `signed_headline`).
 ModelDescription described(ModelDescription model, const std::vector<OwnResponse>& own);
 
-/// The model with the user's responses appended. They are computed sample by sample, before any statistics. If a sample
-/// is not solved at the reference pose of a response, it counts as not solved at every pose. Throws InputError, with
-/// the place of the pose in the study, if a response is relative to a pose that the model does not reach.
+/// The model with the user's responses appended. They are computed sample by sample, before any statistics. A sample
+/// that is not solved at a stated reference pose counts as not solved at every pose; one that is not solved at the
+/// previous pose counts as not solved at this pose. Throws InputError, with the place of the pose in the study, if a
+/// response is relative to a pose that the model does not reach.
 std::unique_ptr<Model> with_responses(std::unique_ptr<Model> model, std::vector<OwnResponse> own);
 
-/// The catalog entry with the user's responses. The linked entries for other metrics and loads do not get these
-/// responses.
+/// The catalog entry whose models compute the user's responses too. The entries for other metrics
+/// (CatalogEntry::other_metric) and loads (with_load) stay without these responses.
 CatalogEntry with_responses(CatalogEntry entry, const std::vector<OwnResponse>& own);
 
 }  // namespace poesy

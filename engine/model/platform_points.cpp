@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t kRows = 4;  // number of responses of each point: x, y, z and position (their norm)
 
-/// The vector from the platform's origin to a point, in the base's axes (m). place: the point in the platform's frame.
-/// R: base_R_platform.
+/// The vector from the platform's origin to a point, in the base's axes (m). place: the point in the platform's frame
+/// (m). R: the rotation base_R_platform [3 x 3], row-major.
 PlatformPoint arm_of(const PlatformPoint& place, const std::array<double, 9>& R) {
   PlatformPoint arm{};
   for (std::size_t k = 0; k < 3; ++k) arm[k] = R[3 * k] * place[0] + R[3 * k + 1] * place[1] + R[3 * k + 2] * place[2];
@@ -29,7 +29,7 @@ struct Turn {
   double twice;
 };
 
-/// The factors for a rotation vector theta with |theta|^2 = `square`.
+/// The factors for a rotation vector theta. square: |theta|^2, rad^2.
 Turn turn_of(double square) {
   constexpr double kSmall = 1e-4;  // if |theta|^2 is smaller, the neglected terms of the series are below rounding
   if (square < kSmall) {
@@ -120,8 +120,8 @@ class PointedModel final : public ForwardingModel {
     return arms;
   }
 
-  /// Computes the responses of the points from the displacement of the platform. rows: the values of all responses
-  /// [responses x samples], row-major.
+  /// Computes the responses of the points from the displacement of the platform. arms: from arms_at(). rows: the values
+  /// of all responses [responses x samples], row-major.
   void displace(std::span<const PlatformPoint> arms, std::span<double> rows, std::size_t samples) const {
     for (std::size_t b = 0; b < samples; ++b) {
       std::array<double, 3> moved{};
@@ -147,13 +147,13 @@ class PointedModel final : public ForwardingModel {
     }
   }
 
-  /// The number of responses of the given model, without those of the points.
+  /// The number of responses of the wrapped model; the responses of the points follow them.
   std::size_t of_model() const { return inner().responses.size(); }
 
  private:
   const ModelDescription& inner() const { return ForwardingModel::description(); }
 
-  /// The point to which the response belongs; null for a response of the given model.
+  /// The point to which the response belongs; null for a response of the wrapped model.
   const NamedPlatformPoint* point_of(std::size_t response) const {
     return response < of_model() ? nullptr : &points_[(response - of_model()) / kRows];
   }
@@ -179,8 +179,8 @@ class PointsEvaluator final : public Evaluator {
   }
 
  private:
-  /// The largest number of poses for which the vectors to the points are kept. Many blocks have the same pose, and a
-  /// model may need an iteration to compute the orientation at a pose.
+  /// The largest number of poses for which the vectors to the points are cached. The cache pays because many blocks
+  /// have the same pose, and a model may have to iterate to find the platform's orientation.
   static constexpr std::size_t kMostPoses = 1024;
 
   std::span<const PlatformPoint> arms_at(std::span<const double> pose) {

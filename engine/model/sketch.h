@@ -13,8 +13,8 @@ using SketchVector = std::array<double, 3>;
 /// A joint in a picture.
 struct SketchedJoint {
   std::string name;  ///< name in the mechanism's file; empty if it has none
-  /// Type: R (revolute), P (prismatic), H (helical), C (cylindrical), U (universal), S (spherical); F for a fixed
-  /// frame.
+  /// Type of joint: R (revolute), P (prismatic), H (helical), C (cylindrical), U (universal), S (spherical); F for a
+  /// fixed frame.
   char type;
   bool actuated;       ///< true if a drive moves the joint
   SketchVector point;  ///< point of the joint: the origin of `frame` before the joint moves
@@ -22,15 +22,16 @@ struct SketchedJoint {
   /// True if the frame from this joint to the next one, or to the platform, has errors; for the first joint also true
   /// if the joint itself or the base has errors.
   bool has_errors;
-  std::size_t first = 1;   ///< index in the limb's frames: the frame of the joint's first axis
-  std::size_t frame = 1;   ///< index in the limb's frames: the frame that has its origin at the joint
+  std::size_t first = 1;   ///< index in the limb's list of Sketch::frames: frame of the joint's first axis
+  std::size_t frame = 1;   ///< index in the limb's list of Sketch::frames: frame with its origin at the joint
   std::string drive = {};  ///< name of the drive; empty if the joint has none
 };
 
 /// A frame of a limb: the frame of the base, of an axis of a joint (after the joint has moved), or of the platform.
 struct SketchedFrame {
-  SketchVector origin;               ///< origin, m
-  std::array<SketchVector, 3> axes;  ///< directions of the axes x, y and z; z is the axis of the joint
+  SketchVector origin;  ///< origin, m
+  /// Directions of the axes x, y and z; in the frame of a joint's axis, z is this axis.
+  std::array<SketchVector, 3> axes;
 };
 
 /// A small motion of the platform as a twist [omega; v] at the base's origin (rad, m).
@@ -45,9 +46,9 @@ struct SketchedError {
   bool turns;          ///< true: rotation about the axis; false: displacement along it
   std::size_t after;   ///< joint, or base, before the error
   std::size_t before;  ///< joint, or platform, after the error; equal to `after` for an error inside a joint
-  /// The first-order motion of each limb's platform end by the error, after the passive joints have adapted, per SI
-  /// unit of the error. Only one motion if it is the same for all limbs. Empty if passive joints are in a singular
-  /// configuration.
+  /// [limbs] The first-order motion of each limb's end at the platform that the error causes, after the passive joints
+  /// have adapted, per SI unit of the error. Only one motion if it is the same for all limbs. Empty if the passive
+  /// joints are in a singular configuration.
   std::vector<SketchTwist> motions;
 };
 
@@ -59,8 +60,8 @@ struct SketchedBody {
 
 /// The bodies at the ends of a limb, as indices in Sketch::bodies.
 struct SketchedEnds {
-  std::size_t from = 0;  ///< body where the limb begins; 0: the base
-  std::size_t to = 1;    ///< body where the limb ends; 1: the platform
+  std::size_t from = 0;  ///< body at which the limb begins; 0: the base
+  std::size_t to = 1;    ///< body at which the limb ends; 1: the platform
 };
 
 /// A point of the platform with a name.
@@ -90,8 +91,9 @@ struct Sketch {
   /// the joints.
   std::vector<std::vector<SketchedFrame>> frames = {};
   std::vector<SketchedError> errors = {};  ///< errors, in the order of ModelDescription::factors
-  bool errors_at_joints = false;  ///< true if angle errors of the first and last frames turn about the joints there
-  bool z_is_down = false;         ///< true if the base's z axis points to the ground
+  /// True if angle errors of a limb's first and last frames turn about the limb's first and last joints.
+  bool errors_at_joints = false;
+  bool z_is_down = false;  ///< true if the base's z axis points to the ground
   /// [limbs] bodies at the ends of each limb; empty: all limbs connect the base and the platform.
   std::vector<SketchedEnds> ends = {};
   std::vector<SketchedPoint> points = {};  ///< named points of the platform
@@ -104,7 +106,7 @@ struct Sketch {
   /// The bodies at the ends of a limb.
   SketchedEnds ends_of(std::size_t limb) const { return ends.empty() ? SketchedEnds{} : ends[limb]; }
 
-  /// The frame of the platform, of which only the axes are meant: its origin may be at a joint. Null if no limb with
+  /// The frame of the platform. Only its axes may be used, because its origin may be at a joint. Null if no limb with
   /// frames ends at the platform.
   const SketchedFrame* platform_frame() const {
     for (std::size_t limb = 0; limb < frames.size(); ++limb) {

@@ -11,8 +11,7 @@ enum class SolveStatus : std::uint8_t {
   converged,      ///< the change in an iteration fell below the tolerance (SolverOptions::tolerance)
   stagnated,      ///< the change stays at rounding level without falling further: as exact as doubles allow
   iteration_cap,  ///< the solution still changed after the allowed number of iterations
-  singular,       ///< the matrix of the equations cannot be factored, or the solution that was found is beyond a
-                  ///< singular pose
+  singular,       ///< the matrix of the equations cannot be factored, or the solution is beyond a singular pose
   non_finite,     ///< a value overflowed or became undefined
   not_assembled,  ///< the loops of a machine with these errors cannot be closed near its nominal pose, or its state
                   ///< meets a singularity while the errors grow from zero

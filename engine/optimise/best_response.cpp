@@ -10,8 +10,8 @@ namespace poesy {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// In a mix, a process has the weight exp(-lagrangian / mu). If its lagrangian exceeds the least one by more than this
-/// multiple of mu, the weight counts as 0.
+/// A process has a weight in the mix that is proportional to exp(-lagrangian / mu). If its lagrangian exceeds the least
+/// one by more than this multiple of mu, the weight counts as 0.
 constexpr double kNegligibleExponent = 40.0;
 constexpr int kMaxNewtonSteps = 100;  ///< largest number of Newton steps in common_size()
 
@@ -21,8 +21,8 @@ double size_within(const CostLaw& cost, double lo, double hi, double price, Stac
   return std::fmax(lo, std::fmin(hi, price > 0.0 ? cost.cheapest_size(price, stacking) : kInfinity));
 }
 
-/// The cost of both parts of a pair, and its derivatives, if the outer part has this size and the inner part is the
-/// largest that fits in it (share x size).
+/// The cost of both parts of a pair, and its derivatives with respect to the outer part's size, if the inner part has
+/// the largest size that fits in it (share x size).
 CostCurve common_curve(const SizedProcess& process, double size, Stacking stacking) {
   const double share = process.inner->share;
   const CostCurve outer = process.cost.curve(size, stacking);
@@ -31,8 +31,8 @@ CostCurve common_curve(const SizedProcess& process, double size, Stacking stacki
           outer.curvature + share * share * inner.curvature};
 }
 
-/// A range of sizes of a pair's outer part. For each size in it, the bounds of both parts allow the largest inner part
-/// that fits, whose size is share x size of the outer part.
+/// The sizes of a pair's outer part, from lo to hi, for which the bounds of both parts allow the largest inner part
+/// that fits: its size is share x size of the outer part.
 struct CommonRange {
   double lo;
   double hi;
@@ -44,15 +44,16 @@ CommonRange common_range(const SizedProcess& process) {
   return {lo, std::fmax(lo, std::fmin(process.hi, inner.hi / inner.share))};
 }
 
-/// The size of a pair's outer part at which cost + price x size is least, if the inner part is the largest that fits in
-/// it (share x size). Newton's method solves for the logarithm of the slope as a function of the logarithm of the size,
-/// which is nearly linear. An error of the size changes the minimum only to second order.
+/// The size of a pair's outer part at which cost + price x size is least, if the inner part has the largest size that
+/// fits in it (share x size). price: of the outer part, plus share x price of the inner part. Newton's method finds the
+/// root -slope = price; it iterates in logarithms, because log(-slope) is nearly linear in log(size). An error of the
+/// size changes the minimum only to second order.
 double common_size(const SizedProcess& process, double price, Stacking stacking) {
   auto [lo, hi] = common_range(process);
   if (lo == hi || price <= 0.0 || common_curve(process, hi, stacking).slope + price <= 0.0) return hi;
   if (lo > 0.0 && common_curve(process, lo, stacking).slope + price >= 0.0) return lo;
-  // The size that is best for one of the two cost laws is at most the size that is best for both, so it is a lower
-  // bound.
+  // Lower bounds: the size that is best for one of the two cost laws alone is at most the size that is best for their
+  // sum.
   const double share = process.inner->share;
   double size = lo;
   if (!process.cost.is_constant()) size = std::fmax(size, process.cost.cheapest_size(price, stacking));
@@ -94,8 +95,8 @@ ProcessResponse pair_response(const SizedProcess& process, const Prices& prices,
 }
 
 /// Derivatives of the best sizes with respect to prices, without their minus sign. own: of the part's size, with
-/// respect to its own price. inner: of the inner part's size, with respect to the inner part's price. cross: of the
-/// size of either part, with respect to the price of the other.
+/// respect to the part's price. inner: of the inner part's size, with respect to the inner part's price. cross: of the
+/// size of one of the two parts, with respect to the price of the other part.
 struct InverseCurvature {
   double own;
   double inner = 0.0;
@@ -146,8 +147,8 @@ struct PairOfParts {
   static constexpr bool kHasInner = true;
 };
 
-/// Sets the members of `part` that are weighted means over the allowed processes. Sizes are summed relative to those of
-/// the process with the largest weight, so that the variance does not lose digits.
+/// Sets the members of `part` that are means or deviations over the mixed processes. Sizes are summed relative to those
+/// of the process with the largest weight, so that the variance does not lose digits.
 template <class Kind>
 void mix(std::span<const SizedProcess> processes, ProcessRange allowed, double mu, Stacking stacking,
          BestResponse& part) {

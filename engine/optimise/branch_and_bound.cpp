@@ -20,17 +20,18 @@ using Choice = std::vector<std::size_t>;
 
 struct Node {
   double bound;        ///< lower bound on the cost of all choices below this node
-  std::size_t number;  ///< how many nodes were made before this one
+  std::size_t number;  ///< number of nodes that were made before this one
   std::vector<ProcessRange> allowed;
-  std::vector<double> multipliers;  ///< multipliers of the parent node
+  /// [working set] multipliers at the parent node; further limits may have joined the working set since.
+  std::vector<double> multipliers;
 
   /// The order of a priority queue, in which the node with the lowest bound comes first.
   bool operator<(const Node& other) const { return std::tie(other.bound, other.number) < std::tie(bound, number); }
 };
 
-/// The cost of a process at its largest sizes that use no more of any limit than the sizes of `most` do; infinite if
-/// the process has no such sizes. In a pair, the inner part becomes no larger than in `most`, and the outer part
-/// exceeds the smallest size that holds the inner part by no more than in `most`.
+/// The cost of a process at its largest sizes that use no more of any limit than the sizes in `most` do; infinite if
+/// the process has no such sizes. In a pair, the inner part is no larger than in `most`, and the outer part exceeds the
+/// smallest size in which the inner part fits by no more than in `most`.
 double cost_within(const SizedProcess& process, const BestResponse& most, Stacking stacking) {
   const auto cost = [&](const CostLaw& law, double size) { return law.at(tolerance_of(size, stacking)); };
   if (!process.inner) return cost(process.cost, std::fmin(process.hi, most.size));
@@ -54,15 +55,15 @@ double single_cost(const SizedProcess& process, Stacking stacking) {
   return own + process.inner->cost.at(tolerance_of(inner_size(process), stacking));
 }
 
-/// A change of one part to a coarser and cheaper process.
+/// A change of one part, or of one pair, to another process that costs less.
 struct Raise {
   double saving;        ///< decrease of the cost
   std::size_t part;     ///< position of the part
   std::size_t process;  ///< position of the new process
 };
 
-/// The standard deviation of price x size over the mixed processes of a part, summed over the parts of a pair. The part
-/// with the largest value is branched first.
+/// The standard deviation of price x size over the mixed processes of a part, summed over both parts of a pair.
+/// branch() splits the part with the largest value.
 double spread_of(const BestResponse& part) {
   return part.price * part.deviation + std::abs(part.inner.price) * part.inner.deviation;
 }
@@ -92,16 +93,19 @@ class BranchAndBound {
   SearchOptions options_;
   DualPath dual_path_;
   std::priority_queue<Node> open_;
-  std::map<Choice, double> solved_;  ///< lower bounds of the leaves that were solved
+  /// Lower bound of each choice that solve_leaf() solved; infinity if no sizes keep the limits.
+  std::map<Choice, double> solved_;
   /// The best solutions, ascending by cost; at most one more than SearchOptions::alternatives.
   std::vector<ConvexSolution> best_;
-  std::vector<double> relaxed_;  ///< [limits] multipliers at the root
-  double closed_ = kInfinity;    ///< lowest lower bound among the nodes that were pruned or solved
-  std::size_t nodes_ = 0;        ///< nodes that were expanded
+  std::vector<double> relaxed_;  ///< [limits] limit_multipliers() of the relaxation of the root
+  /// Lowest lower bound among the nodes and processes that were pruned, and the choices that were solved.
+  double closed_ = kInfinity;
+  std::size_t nodes_ = 0;  ///< number of nodes that were expanded
   std::size_t made_ = 0;
 };
 
-/// Choices that cost more than this are discarded.
+/// The cost above which a choice need not be found, because enough cheaper ones are known, up to
+/// SearchOptions::relative_gap. Infinity while fewer choices are known.
 double BranchAndBound::cutoff() const {
   if (best_.size() <= options_.alternatives) return kInfinity;
   const double cost = best_.back().allocation.cost;
@@ -141,7 +145,8 @@ bool BranchAndBound::is_feasible(const std::vector<ProcessRange>& allowed) const
   return true;
 }
 
-/// A choice that keeps the limits: for each part, the cheapest process that allows a size no larger than the one in the
+/// A choice that keeps the limits if the sizes of the relaxation keep them: for each part, the process that is cheapest
+/// at sizes that use no more of the limits than those of the relaxation (cost_within()). point: the solution of the
 /// relaxation.
 Choice BranchAndBound::round_down(const std::vector<ProcessRange>& allowed, const PathPoint& point) const {
   Choice choice;
@@ -159,9 +164,9 @@ Choice BranchAndBound::round_down(const std::vector<ProcessRange>& allowed, cons
   return choice;
 }
 
-/// Makes parts of a choice coarser one after the other, as long as the limits allow it, if each process of the choice
-/// allows only one size. In each step the part that saves most takes its next larger value; a pair may take any cheaper
-/// values.
+/// Changes parts of a choice to cheaper processes, one part after the other, as long as the limits allow it. Does
+/// nothing unless each process of the choice allows only one size. Each step makes the change with the largest saving
+/// that the limits allow (raises()).
 void BranchAndBound::raise_greedily(Choice& choice) const {
   std::vector<double> sizes(choice.size());
   for (std::size_t i = 0; i < choice.size(); ++i) {
@@ -194,8 +199,8 @@ void BranchAndBound::raise_greedily(Choice& choice) const {
   }
 }
 
-/// The ways to change one part of a choice to a coarser and cheaper process, the largest saving first. Each process
-/// allows one size.
+/// The changes that make one part of a choice cheaper, the largest saving first. A part may change to the next process
+/// in its list, the two parts of a pair together to any process. Only processes that allow one size are considered.
 std::vector<Raise> BranchAndBound::raises(const Choice& choice) const {
   std::vector<Raise> found;
   for (std::size_t i = 0; i < choice.size(); ++i) {
@@ -215,7 +220,8 @@ std::vector<Raise> BranchAndBound::raises(const Choice& choice) const {
   return found;
 }
 
-/// Removes from both ends of each range the processes that cannot belong to a choice cheaper than the cutoff.
+/// Removes from both ends of each range the processes that cannot belong to a choice below the cutoff(). point, bound:
+/// solution of the relaxation, and its lower bound.
 void BranchAndBound::prune_by_bound(std::vector<ProcessRange>& allowed, const PathPoint& point, double bound) {
   const double most = cutoff();
   for (std::size_t i = 0; i < allowed.size(); ++i) {
@@ -232,7 +238,8 @@ void BranchAndBound::prune_by_bound(std::vector<ProcessRange>& allowed, const Pa
   }
 }
 
-/// Splits the range of the part with the largest spread_of(), next to the part's main process, and queues both halves.
+/// Splits the range of processes of the part with the largest spread_of() before or after its main process, and queues
+/// a node for each half.
 void BranchAndBound::branch(const std::vector<ProcessRange>& allowed, const PathPoint& point, double bound) {
   std::size_t part = allowed.size();
   double most = -1.0;
@@ -275,7 +282,8 @@ void BranchAndBound::expand(const Node& node) {
     close(bound);
     return;
   }
-  // Pruning needs a bound and multipliers of the same point. The bound may be lower than the parent node's.
+  // Pruning needs a bound and multipliers of the same point, so it takes the point's bound even if the parent's is
+  // higher.
   prune_by_bound(allowed, point, point.lower_bound);
   branch(allowed, point, bound);
 }

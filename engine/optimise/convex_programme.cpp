@@ -11,21 +11,23 @@ namespace poesy {
 namespace {
 
 constexpr double kNegligible = 1e-9;  ///< a multiplier below this share of the sum of all multipliers counts as 0
-/// Multipliers are improved only if the relative gap between cost and lower bound is above this.
+/// When negligible multipliers are set to 0, the gap between cost and lower bound may double and grow by this share of
+/// the cost.
 constexpr double kGoodGap = 1e-11;
 
 const Process& process_of(const AllocationProblem& problem, const SizedProblem& sized, std::size_t part) {
   return problem.parts[part][sized.processes[part].front().index];
 }
 
-/// The tolerance that belongs to a size. At a bound it is exactly the bound's tolerance.
+/// The tolerance T of a size (size_of()), within the bounds of the process. At a bound it is exactly the bound's
+/// tolerance.
 double tolerance_within(const Process& process, double size, Stacking stacking) {
   if (size == size_of(process.hi, stacking)) return process.hi;
   if (size <= size_of(process.lo, stacking)) return process.lo;
   return std::clamp(tolerance_of(size, stacking), process.lo, process.hi);
 }
 
-/// Sets the tolerances of the inner parts of pairs.
+/// Sets the tolerances of the inner parts of pairs in `tolerance`, which has those of the outer parts. sizes: [parts].
 void set_inner(const AllocationProblem& problem, const SizedProblem& sized, std::span<const double> sizes,
                std::span<double> tolerance) {
   for (const Within& pair : sized.pairs) {
@@ -37,8 +39,8 @@ void set_inner(const AllocationProblem& problem, const SizedProblem& sized, std:
   }
 }
 
-/// [parts] The lowest sizes. In a pair they keep the proportion of the two `sizes` where bounds allow it, because the
-/// smallest inner part may use more of a limit than a larger one.
+/// [parts] The lowest sizes of the processes. In a pair, the inner part has the same share of the outer part's size as
+/// in `sizes`, if its bounds allow this, because the smallest inner part may use more of a limit than a larger one.
 std::vector<double> lowest_like(const SizedProblem& sized, std::span<const double> sizes) {
   std::vector<double> lo;
   for (const auto& processes : sized.processes) lo.push_back(processes.front().lo);
@@ -51,7 +53,7 @@ std::vector<double> lowest_like(const SizedProblem& sized, std::span<const doubl
   return lo;
 }
 
-/// [parts] The tolerances that belong to the sizes lo + keep (sizes - lo), where lo are the sizes from lowest_like().
+/// [parts] The tolerances of the sizes lo + keep (sizes - lo), in which lo are the sizes from lowest_like().
 std::vector<double> tolerances_of(const AllocationProblem& problem, const SizedProblem& sized,
                                   std::span<const double> sizes, double keep) {
   std::vector<double> tolerance(sizes.size());
@@ -67,7 +69,7 @@ std::vector<double> tolerances_of(const AllocationProblem& problem, const SizedP
   return tolerance;
 }
 
-/// The largest s from 0 to 1 for which the sizes lo + s (sizes - lo) keep all limits, where lo are the sizes from
+/// The largest s from 0 to 1 for which the sizes lo + s (sizes - lo) keep all limits, in which lo are the sizes from
 /// lowest_like().
 double share_within(const SizedProblem& sized, std::span<const double> sizes) {
   const double room = 1.0 - 4.0 * rounding_margin(sized.parts());
@@ -81,8 +83,8 @@ double share_within(const SizedProblem& sized, std::span<const double> sizes) {
   return share;
 }
 
-/// [parts] The tolerances that belong to these sizes. If rounding would break a limit, all sizes move towards the
-/// lowest bounds. None if even the lowest bounds break a limit.
+/// [parts] The tolerances of these sizes. If they break a limit, because of rounding, all sizes move towards the lowest
+/// sizes. None if even the lowest sizes break a limit.
 std::optional<std::vector<double>> tolerances_within(const AllocationProblem& problem, const SizedProblem& sized,
                                                      std::span<const double> sizes) {
   for (const double keep : {1.0, share_within(sized, sizes), 0.0}) {
@@ -121,8 +123,8 @@ DualCertificate certify(const SizedProblem& sized, std::vector<std::size_t> work
   return {std::move(working_set), std::move(multipliers), bound};
 }
 
-/// The certificate `whole` with negligible multipliers set to 0, if the lower bound that it then proves is about as
-/// good.
+/// The certificate `whole` with negligible multipliers set to 0, if its lower bound stays about as good; otherwise
+/// `whole`. cost: cost of the solution.
 DualCertificate without_negligible(const SizedProblem& sized, const DualCertificate& whole, double cost) {
   const double sum = std::accumulate(whole.multipliers.begin(), whole.multipliers.end(), 0.0);
   DualCertificate less = whole;
@@ -131,9 +133,9 @@ DualCertificate without_negligible(const SizedProblem& sized, const DualCertific
   return cost - less.bound <= 2.0 * (cost - whole.bound) + kGoodGap * std::abs(cost) ? less : whole;
 }
 
-/// Adds a multiplier for each tight limit: the smallest multiplier at which the lowest bounds are the cheapest sizes of
-/// the parts that affect the limit. An infinite multiplier is omitted. The lower bound does not change, because these
-/// parts have no other size.
+/// Adds a multiplier for each tight limit (SizedProblem::tight): the smallest one at which the lowest sizes have the
+/// least cost + price x size for the parts that affect the limit. A multiplier that is zero or infinite is not added.
+/// The lower bound does not change, because these parts are fixed at their lowest sizes.
 void add_tight_limits(const AllocationProblem& problem, const SizedProblem& sized, DualCertificate& found) {
   for (std::size_t l = 0; l < sized.limits; ++l) {
     if (!sized.tight[l]) continue;

@@ -16,17 +16,19 @@ struct ConvexSolution {
   Allocation allocation;  ///< the tolerances with the least cost
   /// Lower bound on the cost if each part is made by the one process that the problem states for it.
   double lower_bound = 0.0;
-  std::vector<double> multiplier;  ///< [limits] multipliers of the limits that prove the lower bound
+  /// [limits] multipliers that prove the lower bound, in cost per unit of room (ToleranceLimits::room).
+  std::vector<double> multiplier;
 };
 
 /// Finds the tolerances with the least cost. sized: the problem with only one process for each part. working_set:
-/// limits that are likely to be used up, with which the search for multipliers starts. None if the lowest tolerances
-/// break a limit.
+/// indices of the limits that are likely to be used up; the search for multipliers starts with them. None if the lowest
+/// tolerances break a limit.
 std::optional<ConvexSolution> solve_convex(const AllocationProblem& problem, const SizedProblem& sized,
                                            std::span<const std::size_t> working_set);
 
-/// [limits] The multipliers of all limits, in cost per unit of room. multipliers: those of the working set, for limits
-/// divided by their rooms (SizedProblem). Negligible ones become 0.
+/// [limits] The multipliers of all limits, in cost per unit of room (ToleranceLimits::room). multipliers: multipliers
+/// of the limits of the working set after division by their rooms, as in SizedProblem. Limits outside the working set,
+/// and negligible multipliers, get 0.
 std::vector<double> limit_multipliers(const ToleranceLimits& limits, std::span<const std::size_t> working_set,
                                       std::span<const double> multipliers);
 

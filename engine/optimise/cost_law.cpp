@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// x^exponent for x >= 0. Usual exponents are computed by roots, which is faster than by a logarithm.
+/// x^exponent for x >= 0. The usual exponents are computed without std::pow, which is slower.
 double raised(double x, double exponent) {
   if (exponent == 0.5) return std::sqrt(x);
   if (exponent == 1.0) return x;
@@ -99,8 +99,8 @@ double CostLaw::cheapest_size(double price, Stacking stacking) const {
     const double q = exponent(stacking);
     return root(q * b_ / price, q + 1.0);
   }
-  // At the cheapest size, the cost falls by `price` per unit of size. In the worst case (size T), b / decay exp(-T /
-  // decay) = price; for squares (size T^2), b / (2 T decay) exp(-T / decay) = price.
+  // At the cheapest size, the cost falls by `price` per unit of size. For Stacking::worst_case (size T), b / decay
+  // exp(-T / decay) = price; for Stacking::root_sum_square (size T^2), b / (2 T decay) exp(-T / decay) = price.
   if (stacking == Stacking::worst_case) return std::fmax(0.0, shape_ * std::log(b_ / (shape_ * price)));
   const double value = std::log(b_) - 2.0 * std::log(shape_) - std::log(2.0 * price);
   const double tolerance = shape_ * with_own_logarithm(value);

@@ -4,7 +4,8 @@
 /// (Chase, Greenwood, Loosli and Hauglund 1990, Manuf. Rev. 3, 49-59).
 namespace poesy {
 
-/// How effects on a response add up under a limit L. The effect of a tolerance T is a T, with its own factor a.
+/// How the effects of tolerances on a response add up under a limit L. Each tolerance T has an effect a T, with a
+/// factor a of its own.
 enum class Stacking {
   root_sum_square,  ///< sum of a^2 T^2 <= L^2: the limit is linear in T^2
   worst_case        ///< sum of |a| T <= L: the limit is linear in T
@@ -18,7 +19,7 @@ double tolerance_of(double size, Stacking stacking);
 
 /// A cost and its derivatives with respect to the size (T^2 or T, see size_of()).
 struct CostCurve {
-  double value;      ///< cost, in the unit of the costs
+  double value;      ///< cost, in the unit of the user's costs
   double slope;      ///< first derivative with respect to the size, <= 0
   double curvature;  ///< second derivative with respect to the size, >= 0
 };
@@ -43,7 +44,7 @@ class CostLaw {
   /// The size > 0 at which cost + price x size is least; infinite for price 0. Preconditions: price >= 0, the law is
   /// not constant.
   double cheapest_size(double price, Stacking stacking) const;
-  /// The part of the cost that does not depend on the tolerance.
+  /// The term `fixed` of the law, which does not depend on the tolerance.
   double fixed() const { return fixed_; }
   bool is_constant() const { return form_ == Form::constant; }  ///< Whether all tolerances cost the same.
 
@@ -56,7 +57,7 @@ class CostLaw {
   Form form_;
   double fixed_;
   double b_;
-  double shape_;  ///< exponent of T (power) or decay length of T (exponential)
+  double shape_;  ///< `power` of reciprocal_power(), or `decay` of exponential()
 };
 
 }  // namespace poesy

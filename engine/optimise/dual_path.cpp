@@ -17,7 +17,7 @@ constexpr double kMuReduction = 0.1;
 /// The path ends when the cost is within this of its lower bound, as a share of the part of the cost that tolerances
 /// can change.
 constexpr double kRelativeGap = 1e-12;
-/// The path ends if mu is below this share of the scale of multipliers, because rounding dominates there.
+/// The path ends if mu is below this share of multiplier_scale(), because rounding dominates there.
 constexpr double kSmallestMu = 1e-16;
 /// If processes are mixed, the path already ends when mu reaches this share of the part of the cost that tolerances can
 /// change.
@@ -27,16 +27,17 @@ constexpr int kMaxLineSearchSteps = 60;  ///< largest number of trial steps alon
 constexpr int kMaxIterations = 400;      ///< largest number of points of the path plus additions to the working set
 constexpr std::size_t kAddedAtOnce = 4;  ///< number of violated limits that join the working set in one iteration
 
-/// The mean cost of the mixed processes, less the smallest fixed cost of an allowed process. Tolerances can change at
-/// most this part of the cost.
+/// The largest amount by which tolerances can change the cost of a part: the mean cost of its mixed processes, minus
+/// the least fixed cost of its allowed processes.
 double changeable(std::span<const SizedProcess> processes, ProcessRange allowed, const BestResponse& part) {
   double least = kInfinity;
   for (std::size_t p = allowed.first; p < allowed.last; ++p) least = std::fmin(least, processes[p].fixed_cost());
   return std::fmax(0.0, part.cost - least);
 }
 
-/// A scale for multipliers: the sum over the parts of price x size, if each part uses an equal share of the room of the
-/// limit that it affects most.
+/// The order of magnitude of multipliers: the sum over the parts and their allowed processes of price x size, if each
+/// part uses the share 1 / (number of parts) of the room of the limit that it affects most. The price is the one at
+/// which this size is best.
 double multiplier_scale(const SizedProblem& problem, std::span<const ProcessRange> allowed) {
   const auto parts = static_cast<double>(problem.parts());
   double sum = 0.0;
@@ -55,8 +56,8 @@ double multiplier_scale(const SizedProblem& problem, std::span<const ProcessRang
   return costs > 0.0 && std::isfinite(costs) ? costs : 1.0;
 }
 
-/// Factorises a symmetric matrix of size k x k in place (Cholesky), given its lower half. Adds a little to the
-/// diagonal, because rounding may leave the matrix not quite positive definite.
+/// Factorises a symmetric matrix [k x k] in place by Cholesky's method; only its lower half is read. Adds a little to
+/// the diagonal, because the matrix may not be positive definite after rounding.
 void factorise(std::vector<double>& matrix, std::size_t k) {
   double trace = 0.0;
   for (std::size_t r = 0; r < k; ++r) trace += matrix[r * k + r];
@@ -74,7 +75,7 @@ void factorise(std::vector<double>& matrix, std::size_t k) {
   }
 }
 
-/// Solves in place with the Cholesky factor from factorise().
+/// Solves a linear system by the Cholesky factor from factorise(). x: the right-hand side, which the solution replaces.
 void solve(const std::vector<double>& factor, std::vector<double>& x) {
   const std::size_t k = x.size();
   for (std::size_t r = 0; r < k; ++r) {
@@ -114,7 +115,8 @@ double lower_bound(const SizedProblem& problem, std::span<const ProcessRange> al
   }
   for (const double multiplier : multipliers) bound -= multiplier;
   magnitude = std::accumulate(multipliers.begin(), multipliers.end(), magnitude);
-  // The margin for rounding: each number comes from at most about 64 operations, plus one for each limit and each part.
+  // The margin for rounding: each number results from at most about 64 operations, plus one for each part and each
+  // limit of the working set.
   const double operations = static_cast<double>(problem.parts() + working_set.size()) + 64.0;
   return bound - operations * kEpsilon * magnitude;
 }
@@ -149,7 +151,7 @@ void DualPath::begin(std::span<const double> start, double mu) {
 /// Computes the best sizes of all parts at the multipliers, and the slack of the limits (room minus use).
 void DualPath::update_responses(double mu) {
   const std::size_t parts = problem_.parts();
-  std::fill(sizes_.begin(), sizes_.end(), 0.0);  // sizes_ first holds the prices
+  std::fill(sizes_.begin(), sizes_.end(), 0.0);  // sizes_ holds the prices until the best sizes replace them
   for (std::size_t k = 0; k < working_set_.size(); ++k) {
     for (std::size_t i = 0; i < parts; ++i) sizes_[i] += multipliers_[k] * effects_[k * parts + i];
   }
@@ -186,8 +188,8 @@ bool DualPath::centre(double mu) {
   return is_centred(mu);
 }
 
-/// [limits of the working set x parts] P A G, where P = diag(multipliers), A are the effects and G are the inverse
-/// curvatures. G is diagonal except for pairs.
+/// [working set x parts] The matrix P A G with P = diag(multipliers), the effects A [working set x parts] and the
+/// inverse curvatures G [parts x parts] of the best responses. G is diagonal except for pairs.
 std::vector<double> DualPath::scaled_effects() const {
   const std::size_t parts = problem_.parts();
   std::vector<double> scaled(effects_.size());
@@ -206,8 +208,8 @@ std::vector<double> DualPath::scaled_effects() const {
   return scaled;
 }
 
-/// Finds Newton's direction d relative to the multipliers: (P A G A' P + mu I) d = mu - P slack, in the notation of
-/// scaled_effects(). Returns false if the direction is not finite because numbers overflow.
+/// Finds Newton's direction d, relative to the multipliers, from (P A G A^T P + mu I) d = mu - P slack, with the
+/// symbols of scaled_effects(). Returns false if the direction is not finite because numbers overflow.
 bool DualPath::find_newton_direction(double mu) {
   const std::size_t count = working_set_.size();
   const std::size_t parts = problem_.parts();
@@ -226,10 +228,10 @@ bool DualPath::find_newton_direction(double mu) {
   return std::ranges::all_of(direction_, [](double one) { return std::isfinite(one); });
 }
 
-/// Steps along Newton's direction to a larger value of the function that the path maximises (DualPath). The function is
-/// concave, so its slope falls along the direction. A step is too long if the slope at its end is more negative than
-/// half the first slope. Then the search looks for a small slope between this step and a shorter one, because the
-/// function bends sharply where parts reach a bound.
+/// Changes the multipliers along Newton's direction to a larger value of the function that the path maximises
+/// (DualPath). The function is concave, so its slope falls along the direction. A step is too long if the slope at its
+/// end is below minus half of the slope at its beginning. After a step that is too long, the search continues between a
+/// shorter step and this one until the slope is small, because the function bends sharply where sizes reach a bound.
 void DualPath::search_line(double mu) {
   const std::vector<double> before = multipliers_;
   double step = 1.0;
@@ -242,7 +244,7 @@ void DualPath::search_line(double mu) {
     return sum;
   };
   const double steep = slope();
-  std::pair<double, double> near{0.0, steep};  // a step that is too short: its length, and the slope at its end
+  std::pair<double, double> near{0.0, steep};  // longest step that is too short: its length, and the slope at its end
   std::pair<double, double> far{kInfinity, 0.0};
   for (int attempt = 0; attempt < kMaxLineSearchSteps; ++attempt) {
     for (std::size_t k = 0; k < before.size(); ++k) multipliers_[k] = before[k] * (1.0 + step * direction_[k]);
@@ -257,7 +259,7 @@ void DualPath::search_line(double mu) {
   }
 }
 
-/// Adds a few of the most violated limits to the working set. Returns false if no limit is violated.
+/// Adds the most violated limits to the working set, at most kAddedAtOnce. Returns false if no limit is violated.
 bool DualPath::add_violated_limits(double mu) {
   struct Violation {
     double excess;

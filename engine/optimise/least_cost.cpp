@@ -32,8 +32,8 @@ std::optional<LeastCost> without_choice(const AllocationProblem& problem, const 
   return LeastCost{found->allocation, found->lower_bound, {}, found->multiplier, found->multiplier, {0, 0.0}, {}};
 }
 
-/// The reason why a problem with pairs is infeasible although each limit alone can be kept. Without pairs this cannot
-/// happen, because the lowest bounds would keep all limits.
+/// The result for a problem with pairs that is infeasible although each limit alone can be kept. Without pairs this
+/// cannot happen, because the smallest tolerances would keep all limits.
 Infeasible together(const AllocationProblem& problem) {
   POESY_EXPECTS(!problem.pairs.empty());
   std::vector<double> lowest;

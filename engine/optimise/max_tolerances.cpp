@@ -24,7 +24,7 @@ std::vector<double> tolerances_at(double factor, std::span<const double> proport
   return tolerance;
 }
 
-/// The combined effect of these tolerances [parts] on a limit. A part without effect adds nothing, even if its
+/// The combined effect of these tolerances [parts] (SI) on limit l. A part without effect adds nothing, even if its
 /// tolerance is infinite.
 double need_of(const ToleranceLimits& limits, std::size_t l, std::span<const double> tolerance) {
   double sum = 0.0;
@@ -34,7 +34,7 @@ double need_of(const ToleranceLimits& limits, std::size_t l, std::span<const dou
   return sum;
 }
 
-/// The limit that the tolerances [parts] exceed most; none if they keep all limits.
+/// The limit that the tolerances [parts] (SI) exceed by the largest factor; none if they keep all limits.
 std::optional<Infeasible> find_infeasible(const ToleranceLimits& limits, std::span<const double> tolerance) {
   std::optional<Infeasible> worst;
   for (std::size_t l = 0; l < limits.count(); ++l) {
@@ -58,12 +58,11 @@ std::vector<double> corners(std::span<const double> proportions, std::span<const
   return factors;
 }
 
-/// The common factor at which a limit is used up, if the parts that are at a bound are the same as at the factor
-/// `inside`.
+/// The common factor at which limit l is used up, if the same parts are at a bound as at the factor `inside`.
 double factor_of(const ToleranceLimits& limits, std::size_t l, double inside, std::span<const double> proportions,
                  std::span<const ToleranceRange> ranges) {
-  double held = 0.0;  // sum over the parts at a bound of effect x size
-  // The sum over the other parts of effect x size at the factor 1. At another factor it is size_of(factor) times this.
+  double held = 0.0;  // sum of effect x size over the parts at a bound
+  // The sum of effect x size over the other parts, at the factor 1. At another factor it is larger by size_of(factor).
   double grows = 0.0;
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const double effect = limits.row(l)[i];

@@ -12,9 +12,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// The common processes of a pair. First come all combinations of an outer and an inner process in which the inner part
-/// fits in the outer one, with bounds as tight as this allows. Then comes each outer process with the inner part left
-/// out.
+/// The processes of a pair, which describe both parts: all combinations of a process of the outer part and one of the
+/// inner part that fits in it, with bounds tightened so that the inner part fits; then each process of the outer part
+/// with the inner part left out, if `pair` allows that.
 std::vector<SizedProcess> processes_of_pair(const Within& pair, const std::vector<SizedProcess>& outer,
                                             const std::vector<SizedProcess>& inner) {
   std::vector<SizedProcess> both;
@@ -40,15 +40,14 @@ std::vector<SizedProcess> processes_of_pair(const Within& pair, const std::vecto
   return both;
 }
 
-/// The largest growth of the outer part's size (in a pair) that the limits allow; infinite if no limit stops the
+/// The largest growth, from 0, of the size of a pair's outer part that the limits allow; infinite if no limit stops the
 /// growth.
 struct PairGrowth {
   double alone = kInfinity;     ///< if only the outer part grows
   double together = kInfinity;  ///< if the inner part also grows, by share x the growth of the outer part
 };
 
-/// How far the sizes of a pair of parts (outer and inner, Within) can grow if their effect on limit l, as a share of
-/// its room, may be at most most[l].
+/// The growth of a pair that keeps its effect on each limit l, as a share of the limit's room, at most most[l].
 PairGrowth pair_growth(const SizedProblem& problem, const Within& pair, std::span<const double> most) {
   PairGrowth growth;
   for (std::size_t l = 0; l < problem.limits; ++l) {
@@ -103,7 +102,7 @@ void fix_free_pairs(SizedProblem& problem, std::vector<std::size_t>& unbounded) 
 
 std::optional<std::size_t> tighten_pair(SizedProblem& problem, const Within& pair, std::span<const double> left) {
   auto& processes = problem.processes[pair.outer];
-  // [limits] How much the pair may use of each limit; the margins cover the rounding of both terms.
+  // [limits] The largest share of each limit's room that the pair may use; the margins cover rounding.
   std::vector<double> most;
   for (std::size_t l = 0; l < problem.limits; ++l) {
     most.push_back((least_use_of_pair(problem, pair, l) + left[l]) * (1.0 + 1e-9) + 4.0 * kEpsilon);

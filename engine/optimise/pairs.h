@@ -7,10 +7,10 @@
 
 #include "engine/optimise/sized_problem.h"
 
-/// Presolve of pairs of parts (Within): bounds their sizes before the search. Let u be the size of the outer part and v
-/// that of the inner part, 0 <= v <= share x u. Every such pair (u, v) is a (1, 0) + b (1, share) with a, b >= 0.
-/// Larger a or b never lower the use of a limit, even if the inner part's effect is negative. So the unused room of a
-/// limit bounds both a and b.
+/// Presolve of pairs of parts (Within in least_cost.h), which bounds their sizes before the search. Let u be the size
+/// of the outer part and v the size of the inner part, 0 <= v <= share x u. All allowed sizes are (u, v) = a (1, 0) + b
+/// (1, share) with a, b >= 0. A larger a or b never lowers the use of a limit (the combined effect), even if the inner
+/// part's effect is negative. So the unused room of a limit bounds both a and b.
 namespace poesy {
 
 /// Replaces the processes of the outer part of each pair by processes that describe both parts (SizedProcess::inner).
@@ -20,8 +20,8 @@ void join_pairs(SizedProblem& problem);
 /// Whether a part is in a pair.
 bool is_in_pair(const SizedProblem& problem, std::size_t part);
 
-/// In processes where no limit stops the growth of an outer part, fixes it at its largest size. Adds the outer parts
-/// that have no largest size to `unbounded`.
+/// In each process in which no limit stops the growth of an outer part, fixes the outer part at its largest size. Adds
+/// the outer parts that have no largest size to `unbounded`.
 void fix_free_pairs(SizedProblem& problem, std::vector<std::size_t>& unbounded);
 
 /// Removes the processes of a pair that break a limit even if all other parts use as little of the limit as they can.
@@ -29,8 +29,8 @@ void fix_free_pairs(SizedProblem& problem, std::vector<std::size_t>& unbounded);
 /// of it as they can. Returns a limit that every process breaks, or none.
 std::optional<std::size_t> tighten_pair(SizedProblem& problem, const Within& pair, std::span<const double> left);
 
-/// Restricts a pair to the sizes that use limit l least. Sizes that do not affect this limit stay free. Returns whether
-/// the cost at the largest of the remaining sizes is finite for some process.
+/// Restricts a pair to the sizes that use limit l least. A size that does not affect this limit stays free. Returns
+/// true if the cost at the largest of the remaining sizes is finite for at least one process.
 bool fix_at_least_use(SizedProblem& problem, const Within& pair, std::size_t l);
 
 }  // namespace poesy

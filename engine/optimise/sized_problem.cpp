@@ -37,15 +37,15 @@ std::vector<double> lowest_tolerances(const SizedProblem& problem) {
   return tolerance;
 }
 
-/// The least combined effect of all parts on limit l, also for a problem with pairs.
+/// The least combined effect of all parts on limit l, in the unit of its room.
 double least_need(const ToleranceLimits& limits, const SizedProblem& problem, std::size_t l) {
   if (problem.pairs.empty()) return limits.need(l, lowest_tolerances(problem));
   const auto all = all_processes(problem);
   return limits.room[l] * least_use(problem, l, all, lowest(problem, all));
 }
 
-/// The limit that is exceeded most if each pair takes the sizes that use the limit least, and all other parts have
-/// their lowest bounds. None if each limit alone can be kept.
+/// The limit that is exceeded most if each pair has the sizes that use this limit least, and all other parts have their
+/// lowest sizes. None if each limit alone can be kept.
 std::optional<Infeasible> find_infeasible_with_pairs(const ToleranceLimits& limits, const SizedProblem& problem) {
   std::optional<Infeasible> worst;
   for (std::size_t l = 0; l < limits.count(); ++l) {
@@ -56,7 +56,7 @@ std::optional<Infeasible> find_infeasible_with_pairs(const ToleranceLimits& limi
   return worst;
 }
 
-/// The limit that the lowest bounds exceed most; none if they keep all limits.
+/// The limit that the lowest sizes exceed most; none if they keep all limits.
 std::optional<Infeasible> find_infeasible(const ToleranceLimits& limits, const SizedProblem& problem) {
   if (limits.count() == 0) return std::nullopt;
   if (!problem.pairs.empty()) return find_infeasible_with_pairs(limits, problem);
@@ -127,9 +127,8 @@ std::optional<std::size_t> tighten_bounds(SizedProblem& problem) {
   return std::nullopt;
 }
 
-/// Finds the tight limits (SizedProblem::tight), whose room is used up by the lowest sizes of all parts, except for
-/// rounding. Fixes the parts that affect them. Returns the first tight limit for which the cost of a fixed part is
-/// infinite, or none.
+/// Finds the tight limits (SizedProblem::tight) and fixes the parts that affect them at their lowest sizes. Returns the
+/// first tight limit for which the cost of a fixed part is infinite, or none.
 std::optional<std::size_t> fix_tight_limits(SizedProblem& problem) {
   auto all = all_processes(problem);
   const std::vector<double> lo = lowest(problem, all);

@@ -8,8 +8,8 @@
 
 #include "engine/optimise/least_cost.h"
 
-/// The least-cost problem in terms of sizes (T^2, or T for Stacking::worst_case), in which limits are linear. Each
-/// limit is divided by its room, so its room is 1.
+/// The least-cost problem (AllocationProblem) in terms of sizes (T^2, or T for Stacking::worst_case), in which limits
+/// are linear. Each limit is divided by its room (the largest combined effect that keeps the limit), so its room is 1.
 namespace poesy {
 
 /// The process of the inner part of a pair (Within). Bounds are sizes (T^2, or T for Stacking::worst_case).
@@ -30,21 +30,21 @@ struct Effects {
   double inner;  ///< effect of a pair's inner part; may be negative, but own + share x inner is >= 0
 };
 
-/// A process whose bounds are sizes (T^2, or T for Stacking::worst_case) instead of tolerances. A pair has common
-/// processes for both parts, stored with the outer part.
+/// A process whose bounds are sizes (T^2, or T for Stacking::worst_case) instead of tolerances. In a pair (Within), a
+/// process of the outer part also describes a process of the inner part.
 struct SizedProcess {
   CostLaw cost;  ///< cost as a function of the tolerance
   double lo;     ///< least size
   double hi;  ///< largest size, finite after presolve: at most the size that the limits allow if all other parts are at
               ///< their lowest sizes
   std::size_t index;  ///< position of the process in the list of its part in AllocationProblem::parts
-  std::optional<InnerProcess> inner = {};  ///< the inner part of a pair
+  std::optional<InnerProcess> inner = {};  ///< process of the pair's inner part; none if the part is in no pair
 
-  /// Whether the process allows only one size.
+  /// Returns true if the process allows only one size, for each of its parts.
   bool single() const { return lo == hi && (!inner || inner->left_out || inner->lo == inner->hi); }
   double fixed_cost() const;  ///< The part of the cost that does not depend on sizes.
-  /// The least share of a limit's room that sizes of this process use. effects: those of the process's parts on the
-  /// limit.
+  /// The least share of a limit's room that sizes of this process use. effects: effects on this limit, divided by its
+  /// room.
   double least_use(const Effects& effects) const;
 };
 
@@ -63,14 +63,13 @@ struct SizedProblem {
   Stacking stacking;                   ///< how effects add up, which defines the size of a tolerance
   std::size_t limits;                  ///< L, the number of limits
   std::span<const double> effects;     ///< [limits x parts] effects divided by rooms, from effects_by_room()
-  std::vector<double> largest_effect;  ///< [parts] largest magnitude of the effects of each part on the limits
+  std::vector<double> largest_effect;  ///< [parts] largest magnitude of a part's effects over all limits
   std::vector<std::vector<SizedProcess>> processes;  ///< [parts] processes of each part, ascending by lo
-  /// [limits] 1 for a tight limit: the lowest sizes of the parts use up its room, except for rounding. So the parts
-  /// that affect this limit are fixed at these sizes.
+  /// [limits] 1 for a tight limit, 0 for others. The lowest sizes of the parts use up the room of a tight limit, except
+  /// for rounding, so the parts that affect it are fixed at these sizes.
   std::vector<char> tight;
-  /// Pairs of parts: the size of the inner part (orientation) is bounded by that of the outer part (location). The
-  /// processes of both are stored with the outer part; the inner part's own list has one process of size 0 without
-  /// cost.
+  /// Pairs of parts (Within). Processes of the outer part also describe the inner part (SizedProcess::inner); in the
+  /// list `processes`, the inner part itself has only one process, of size 0 and without cost.
   std::span<const Within> pairs = {};
 
   std::size_t parts() const { return processes.size(); }  ///< N, the number of parts.
@@ -82,7 +81,7 @@ struct SizedProblem {
 
 /// The allowed processes of a part: positions [first, last) in its list, at least one.
 struct ProcessRange {
-  std::size_t first;  ///< position in SizedProblem::processes
+  std::size_t first;  ///< first position in the part's list in SizedProblem::processes
   std::size_t last;   ///< one past the last position
 
   std::size_t size() const { return last - first; }  ///< The number of processes.
@@ -91,19 +90,22 @@ struct ProcessRange {
 /// [parts] The range of all processes for each part.
 std::vector<ProcessRange> all_processes(const SizedProblem& problem);
 
-/// [parts] The lowest size of each part among its allowed processes. It is 0 for the parts of pairs, because the sizes
-/// with the least use differ from limit to limit.
+/// [parts] The lowest size of each part among its allowed processes. It is 0 for both parts of a pair, because the
+/// sizes of a pair that use a limit least differ from limit to limit.
 std::vector<double> lowest(const SizedProblem& problem, std::span<const ProcessRange> allowed);
 
-/// The least share of the room of limit l that all parts together use with their allowed processes. lo: from lowest().
+/// The least share of the room of limit l that all parts together use with their allowed processes. lo: lowest() for
+/// the same processes.
 double least_use(const SizedProblem& problem, std::size_t l, std::span<const ProcessRange> allowed,
                  std::span<const double> lo);
 
-/// The problem with bounds as tight as limits and costs allow (presolve). The result keeps a reference to `effects`.
+/// Presolve: the problem in terms of sizes, with bounds as tight as limits and costs allow. effects:
+/// effects_by_room(problem), to which the result keeps a reference.
 std::variant<SizedProblem, Infeasible, Unbounded> sized_problem(const AllocationProblem& problem,
                                                                 std::span<const double> effects);
 
-/// The problem with one process for each part, chosen by position; none if the lowest bounds then break a limit.
+/// The problem with one process for each part. choice: [parts] position of this process. None if the lowest sizes then
+/// break a limit.
 std::optional<SizedProblem> with_processes(const SizedProblem& problem, std::span<const std::size_t> choice);
 
 }  // namespace poesy

@@ -9,13 +9,13 @@
 /// Limits on the combined effect of the tolerances of all parts.
 namespace poesy {
 
-/// L linear constraints on the sizes of N parts: sum over the parts i of effects_li size_i <= room_l. The size of a
-/// tolerance T is T^2, or T for Stacking::worst_case (cost_law.h).
+/// L linear constraints on the sizes of N parts: for each limit l, the sum over the parts i of effects_li size_i is at
+/// most room_l. The size of a tolerance T is T^2, or T for Stacking::worst_case (cost_law.h).
 struct ToleranceLimits {
   Stacking stacking = Stacking::root_sum_square;  ///< how effects add up
   std::size_t parts = 0;                          ///< N, the number of parts
   /// [limits x parts] Effect on each limit per unit of each part's size: a^2, or |a| for Stacking::worst_case, if a
-  /// tolerance T has the effect a T. Not negative, except for inner parts (Within).
+  /// tolerance T has the effect a T. Not negative, except for the inner parts of pairs (Within in least_cost.h).
   std::vector<double> effects;
   std::vector<double> room;  ///< [limits] the largest combined effect of all parts that keeps the limit
 
@@ -39,7 +39,7 @@ LimitUse worst_use(const ToleranceLimits& limits, std::span<const double> tolera
 
 /// A problem without a feasible point: even the lowest tolerances break a limit.
 struct Infeasible {
-  std::size_t limit;  ///< the limit of which the lowest tolerances use the largest share (LimitUse)
+  std::size_t limit;  ///< position of the limit of which the lowest tolerances use the largest share (LimitUse)
   double need;        ///< combined effect of the lowest tolerances on this limit
   double room;        ///< room of the limit
 };

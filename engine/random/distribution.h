@@ -29,9 +29,9 @@ class Distribution {
   static Distribution uniform(double half_width);     ///< Constant density on +-half_width > 0.
   static Distribution triangular(double half_width);  ///< Density falling linearly from zero error to +-half_width > 0.
 
-  /// The distribution of further parts, estimated from the measured values of n parts (SmoothedValues). Its mean and
-  /// its standard deviation (with n - 1) are those of the values; the mean need not be zero. There must be at least
-  /// kLeastMeasured values, finite and not all equal.
+  /// The distribution of the error of further parts, estimated from the measured values of n parts (SmoothedValues).
+  /// Its mean and its standard deviation (with n - 1) are those of the values; the mean need not be zero. There must be
+  /// at least kLeastMeasured values, finite and not all equal.
   static Distribution measured(std::vector<double> values);
 
   /// A distribution in which each of the given values is equally likely. They are the errors of machines that are given

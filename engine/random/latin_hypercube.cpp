@@ -22,7 +22,7 @@ class Permutation {
  public:
   Permutation(const StreamAddress& address, std::uint64_t strata)
       : strata_(strata), high_bits_(bits_for(strata) / 2), low_bits_(bits_for(strata) - high_bits_) {
-    // The keys come from the blocks of random bits after those that samples use.
+    // The keys are the random bits of the blocks that follow those of the samples.
     constexpr std::uint64_t kKeyBlock = LatinHypercube::kMostSamples / 4;
     for (std::size_t k = 0; k < kRounds; k += 4) {
       std::ranges::copy(random_block(address, kKeyBlock + k / 4), keys_.begin() + k);

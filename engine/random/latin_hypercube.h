@@ -13,10 +13,10 @@ namespace poesy {
 /// uniform on the unit cube. A part of the samples is not a Latin hypercube, so n must be known from the beginning.
 ///
 /// The permutation of a dimension is a Feistel network of eight rounds over the smallest power of two that is at least
-/// n and 2^10, applied until the result is below n (Black and Rogaway 2002). So each coordinate is computed from the
-/// seed, the dimension, the replicate and the number of the sample, and no permutation is stored. The random bits of
-/// keys and places come from Philox (stream.h) with purpose latin_hypercube, factor = dimension and pose = replicate.
-/// Replicates are independent.
+/// n and 2^10, which is applied again until the result is below n (Black and Rogaway 2002). So each coordinate is
+/// computed from the seed, the dimension, the replicate and the number of the sample, and no permutation is stored. The
+/// random bits of keys and places come from Philox (stream.h) with purpose latin_hypercube, factor = dimension and pose
+/// = replicate. Replicates are independent.
 class LatinHypercube {
  public:
   /// The largest number of samples: 2^32.

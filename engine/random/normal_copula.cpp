@@ -53,12 +53,12 @@ NormalCopula::NormalCopula(std::span<const double> correlation)
 
 void NormalCopula::correlate(std::span<const std::span<double>> rows) const {
   POESY_EXPECTS(rows.size() == size_);
-  // number of columns that are processed together, so that a part of all rows fits the cache
+  // The number of columns that are processed together, so that these columns of all rows fit into the cache.
   constexpr std::size_t kColumns = 128;
   const std::size_t count = rows.front().size();
   for (std::size_t begin = 0; begin < count; begin += kColumns) {
     const std::size_t columns = std::min(kColumns, count - begin);
-    // goes from the last row to the first, because a row needs the unchanged rows before it
+    // The loop goes from the last row to the first, because a row needs the unchanged rows before it.
     for (std::size_t i = size_; i-- > 0;) {
       scale(triangle_[i * size_ + i], rows[i].data() + begin, columns);
       for (std::size_t j = 0; j < i; ++j) {

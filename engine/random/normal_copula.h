@@ -9,8 +9,8 @@ namespace poesy {
 /// The smallest eigenvalue of a symmetric matrix with at least one row.
 double smallest_eigenvalue(std::span<const double> matrix);
 
-/// The least eigenvalue that a correlation matrix may have. With a smaller eigenvalue, one error would follow from the
-/// others.
+/// The least eigenvalue that a correlation matrix may have. With a smaller eigenvalue, one error would practically be a
+/// linear function of the others.
 inline constexpr double kLeastEigenvalue = 1e-9;
 
 /// The Cholesky factor of a matrix: a lower triangle L [k x k], row-major, with L L^T = matrix. Precondition: the
@@ -18,8 +18,8 @@ inline constexpr double kLeastEigenvalue = 1e-9;
 std::vector<double> lower_triangle(std::span<const double> matrix);
 
 /// Makes normal scores of k correlated errors: z' = L z, where z are independent standard normals and L L^T = R is the
-/// correlation. Each score alone is standard normal. Together with the quantile functions of the errors this is the
-/// Gaussian copula (Nelsen 2006, An Introduction to Copulas, ch. 2.5).
+/// correlation matrix. Each score alone is standard normal. Together with the quantile functions of the errors this is
+/// the Gaussian copula (Nelsen 2006, An Introduction to Copulas, ch. 2.5).
 class NormalCopula {
  public:
   /// correlation: R [k x k]. Precondition: R is symmetric and positive definite, with ones on the diagonal.
@@ -48,8 +48,8 @@ class ConditionalScores {
                     std::span<const std::size_t> drawn);
 
   /// Fills the rows of the drawn errors with a score for each sample. shared: scores of the shared errors; normals:
-  /// independent standard normals for the drawn ones. Without shared errors it equals NormalCopula::correlate().
-  /// Precondition: rows have equal length and do not overlap.
+  /// independent standard normals for the drawn ones. Without shared errors the result is that of
+  /// NormalCopula::correlate(). Precondition: rows have equal length and do not overlap.
   void fill(std::span<const std::span<const double>> shared, std::span<const std::span<const double>> normals,
             std::span<const std::span<double>> drawn) const;
 

@@ -84,8 +84,9 @@ constexpr double kMiddle = 0.425;
 }
 
 /// A normal about zero that may be truncated at +-half_width. Its quantile at u is the quantile of the whole normal at
-/// 1/2 + middle(u); the share of the whole normal beyond it is tail(u). For a drawn u (a multiple of 2^-54, see
-/// stream.h), u - 1/2 and, for u >= 1/2, 1 - u are exact, so the quantiles at u and 1 - u are exactly opposite.
+/// 1/2 + middle(u); the share of the whole normal beyond this quantile, on its side of zero, is tail(u). For a drawn u
+/// (a multiple of 2^-54, see stream.h), u - 1/2 and, for u >= 1/2, 1 - u are exact, so the quantiles at u and 1 - u are
+/// exactly opposite.
 struct Normal {
   double sigma;
   double half_width = std::numeric_limits<double>::infinity();
@@ -119,7 +120,7 @@ double quantile_of(const Normal& normal, double u) {
   return normal.tail_value(u, std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * tail, DoublePolicy{}));
 }
 
-/// Replaces shares in the middle by their quantiles. Other shares get meaningless values.
+/// Replaces shares in the middle (is_middle()) by their quantiles. Other shares get meaningless values.
 POESY_EACH_INSTRUCTION_SET void replace_middles(Normal normal, double* shares, std::size_t count) {
   for (std::size_t k = 0; k < count; ++k) shares[k] = normal.middle_value(shares[k]);
 }

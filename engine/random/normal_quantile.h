@@ -5,7 +5,7 @@
 namespace poesy {
 
 /// The quantile of a normal with standard deviation sigma at the share u, to a few units in the last place. The values
-/// at u and 1 - u have opposite signs, exactly so where 1 - u is exact. Precondition: 0 < u < 1.
+/// at u and 1 - u differ only in sign; if 1 - u is exact, this holds to the last bit. Precondition: 0 < u < 1.
 double normal_quantile(double sigma, double u);
 
 /// Replaces each share by its normal_quantile(), with the same bits on every instruction set. Precondition: shares are

@@ -34,8 +34,9 @@ template <std::size_t n>
   return power_series(kInverse, r) * std::bit_cast<double>(power);
 }
 
-/// The share of a standard normal above a, for 0 <= a <= 8.3. It comes from Mills' ratio times (a + 4), which is a
-/// polynomial in (a - 4) / (a + 4) with a relative error of 5e-17, interpolated with 50 digits at Chebyshev nodes.
+/// The share of a standard normal above a, for 0 <= a <= 8.3. It is computed from Mills' ratio. Mills' ratio times (a +
+/// 4) is approximated, with a relative error of 5e-17, by a polynomial in (a - 4) / (a + 4) that was interpolated with
+/// 50 digits at Chebyshev nodes.
 [[gnu::always_inline]] inline double share_beyond(double a) {
   constexpr double kSeries[] = {0.75528513041575152,     -0.60789664197189219,    0.38713740074222225,
                                 -0.18652185795966197,    0.060396574890266341,    -0.0075401889661925407,

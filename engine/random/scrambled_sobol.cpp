@@ -53,9 +53,9 @@ ScrambledSobol::ScrambledSobol(std::size_t dimensions, std::uint64_t seed)
     : seed_(seed), directions_(dimensions * kDigits) {
   boost::random::sobol sequence(dimensions);
   for (std::size_t digit = 0; digit < kDigits; ++digit) {
-    // Point n is the exclusive or of the direction numbers at the ones in its Gray code, n ^ n / 2. The Gray code of
-    // the n below has a single one, so point n is a direction number. Boost leaves out the origin, so n - 1 points
-    // precede point n.
+    // Point n is the exclusive or of the direction numbers at the ones in its Gray code, n ^ n / 2. For n = 2^(digit +
+    // 1) - 1 the Gray code has a single one, so point n is a direction number. Boost leaves out the origin, so n - 1
+    // points precede point n.
     const std::uint64_t point = (std::uint64_t{2} << digit) - 1;
     sequence.seed(point - 1);
     for (std::size_t d = 0; d < dimensions; ++d) {

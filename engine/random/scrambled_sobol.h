@@ -12,8 +12,8 @@ namespace poesy {
 
 /// Sobol' points, including the origin, with Owen's nested uniform scrambling (Owen 1995, in: Monte Carlo and
 /// Quasi-Monte Carlo Methods, 299-317). Each point is uniform on the unit cube; the first 2^m points of a replicate are
-/// a digital net, as the points of SobolSequence are. The points of one replicate depend on each other, but replicates
-/// are independent, so the scatter of their estimates shows the uncertainty.
+/// a digital net, as they are without scrambling. The points of one replicate depend on each other, but replicates are
+/// independent, so the scatter of their estimates shows the uncertainty.
 ///
 /// Digit k of a coordinate is flipped by a random bit that depends on the k digits before it. A block of Philox4x64-10
 /// (stream.h), with purpose scrambled_sobol, factor = dimension and pose = replicate, has these bits for a binary tree

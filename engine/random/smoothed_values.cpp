@@ -60,11 +60,11 @@ SmoothedValues::SmoothedValues(std::vector<double> values) : values_(std::move(v
   std::ranges::stable_sort(order, {}, [&](std::size_t k) { return values_[k]; });
   std::vector<double> sorted;
   for (const std::size_t k : order) sorted.push_back(values_[k]);
-  // Computed twice, so that the mean of values far from zero is exact enough.
+  // The mean is computed twice, so that it is exact enough for values far from zero.
   mean_ = mean_about(sorted, mean_about(sorted, 0.0));
   const double variance = squares_about(sorted, mean_) / static_cast<double>(n - 1);
   const std::vector<double> distance = neighbour_distances(sorted);
-  // The scale for which the mean of (scale distance)^2 / 3 is variance / n.
+  // The scale for which the mean of (scale x distance)^2 / 3, the variances of the uniforms, is variance / n.
   const double scale = std::numbers::sqrt3 * std::sqrt(variance / squares_about(distance, 0.0));
   for (std::size_t k = 0; k < n; ++k) half_widths_[order[k]] = scale * distance[k];
   add_pieces();
@@ -85,7 +85,7 @@ void SmoothedValues::add_pieces() {
     knots_.push_back(x);
     shares_.push_back(below);
   };
-  std::vector<Spread> over;  // ranges that contain the piece
+  std::vector<Spread> over;  // ranges that contain the piece between ends[e] and ends[e + 1]
   auto next = spreads.begin();
   for (std::size_t e = 0; e < ends.size(); ++e) {
     add_knot(ends[e]);

@@ -7,15 +7,15 @@
 namespace poesy {
 
 /// The distribution of the error of a further part after n parts were measured. It is a mixture with one component for
-/// each measured value v: a uniform on v +- w, with a half-width w of its own. Mean and standard deviation s (with n -
-/// 1) are those of the measured values: the values alone have the variance (n - 1)/n s^2, and smoothing adds the
-/// missing s^2/n.
+/// each measured value v: a uniform on v +- w, with its own half-width w. Mean and standard deviation s (with n - 1)
+/// are those of the measured values: the values alone have the variance (n - 1)/n s^2, and smoothing adds the missing
+/// s^2/n.
 ///
 /// w is in proportion to the distance of the value from its k-th nearest other value, k = ceil(sqrt(n)) (Breiman,
-/// Meisel and Purcell 1977, Technometrics 19, 135-144). So w is small where values are close together, 0 where they are
-/// equal, and largest for a value far from all others. With 40 values from a normal, draws reach 0.7 s beyond the
-/// smallest and the largest value. On either side, a share of 0.8/n of all draws is beyond; for a real further part the
-/// probability is 1/(n + 1), for any distribution.
+/// Meisel and Purcell 1977, Technometrics 19, 135-144). So w is small for values that are close together, 0 for values
+/// that are equal, and largest for a value far from all others. With 40 values from a normal, draws reach 0.7 s beyond
+/// the smallest and the largest value. The share of draws above the largest value is 0.8/n, and as many are below the
+/// smallest; for a real further part this probability is 1/(n + 1), whatever the distribution.
 class SmoothedValues {
  public:
   /// values: [n], in any order. Precondition: n > 1, all are finite, not all are equal.

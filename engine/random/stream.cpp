@@ -79,8 +79,8 @@ POESY_AVX512 inline void store(const Blocks& blocks, std::uint64_t* words) {
   const __m512i odd_01 = _mm512_unpackhi_epi64(blocks.c0, blocks.c1);
   const __m512i even_23 = _mm512_unpacklo_epi64(blocks.c2, blocks.c3);
   const __m512i odd_23 = _mm512_unpackhi_epi64(blocks.c2, blocks.c3);
-  // Each result has the words of two lanes: 0x44 takes lanes 0 and 2 of the even ones or 1 and 3 of the odd ones, 0xee
-  // takes lanes 4 and 6 or 5 and 7.
+  // Each of the next four vectors has the words of two lanes: 0x44 selects lanes 0 and 2 from the even vectors, and 1
+  // and 3 from the odd vectors; 0xee selects lanes 4 and 6, and 5 and 7.
   const __m512i even_low = _mm512_shuffle_i64x2(even_01, even_23, 0x44);
   const __m512i odd_low = _mm512_shuffle_i64x2(odd_01, odd_23, 0x44);
   const __m512i even_high = _mm512_shuffle_i64x2(even_01, even_23, 0xee);
@@ -161,8 +161,8 @@ std::array<std::uint64_t, 4> random_block(const StreamAddress& address, std::uin
 }
 
 void fill_uniforms(const StreamAddress& address, SampleIndex first, std::span<double> uniforms) {
-  // Computes whole blocks. The first block may begin before the first sample, and the last may end after the last
-  // sample.
+  // Philox is computed for whole blocks. The first block may begin before the first sample, and the last may end after
+  // the last sample.
   constexpr std::size_t kWords = 512;
   const PhiloxRun run{
       address.factor.value, address.pose.value, {address.seed, static_cast<std::uint64_t>(address.purpose)}};

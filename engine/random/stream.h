@@ -20,7 +20,7 @@ enum class Purpose : std::uint64_t {
   zone_attempts = 8  ///< further draws of a feature after inspection has rejected one
 };
 
-/// The address of a sequence of draws: one factor at one pose. The sample index completes it.
+/// The address of a sequence of draws, for one factor at one pose. A draw of the sequence is found by the sample index.
 struct StreamAddress {
   std::uint64_t seed = 0;                    ///< seed of the study
   Purpose purpose = Purpose::error_samples;  ///< use of the draws; draws for different purposes are independent
@@ -38,8 +38,9 @@ std::array<std::uint64_t, 4> random_block(const StreamAddress& address, std::uin
 /// The smallest uniform that fill_uniforms() draws.
 inline constexpr double kSmallestUniform = 0x1p-54;
 
-/// Fills uniforms[k] with the draw of sample first + k, strictly inside (0, 1): the middle of one of 2^53 cells, which
-/// the upper bits select. Equal to uniform_from_bits(random_bits(address, first + k)).
+/// Fills uniforms[k] with the draw of sample first + k, strictly inside (0, 1): the middle of one of 2^53 equal cells
+/// of the interval (0, 1); the upper 53 random bits select the cell. Equal to uniform_from_bits(random_bits(address,
+/// first + k)).
 void fill_uniforms(const StreamAddress& address, SampleIndex first, std::span<double> uniforms);
 
 /// Maps 64 bits to (cell + 0.5) / 2^53 with cell the upper 53 bits, kept below 1.

@@ -114,12 +114,12 @@ std::string response_text(const NamedUnit& response, double si) {
 
 std::string coordinates_text(const StoredResult& result, std::size_t pose) {
   constexpr double kRounding = 1e-12;  // mm or deg; a curve that returns to zero may miss zero by this rounding error
-  if (pose >= result.poses.size()) return {};  // because a result file may name a pose that does not exist
+  if (pose >= result.poses.size()) return {};  // a result file may name a pose that does not exist
   std::string text = result.time.empty() ? std::string() : fmt::format("t {} s", number_text(result.time[pose], 4));
   for (std::size_t c = 0; c < result.pose_coordinates.size(); ++c) {
     const NamedUnit& named = result.pose_coordinates[c];
     const double value = result.poses[PoseIndex(pose)][c] / display(named).si;
-    const bool is_large = std::abs(value) >= 999.5;  // three digits would write it with an exponent
+    const bool is_large = std::abs(value) >= 999.5;  // with three digits, the text would have an exponent
     const std::string number =
         is_large ? fmt::format("{:.0f}", value) : number_text(std::abs(value) < kRounding ? 0.0 : value, 3);
     text += (text.empty() ? "" : ", ") + named.name + " " + with_unit_text(number, named);

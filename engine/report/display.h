@@ -12,27 +12,27 @@
 #include "engine/result/result_file.h"
 #include "engine/schema/settings.h"
 
-/// Functions that show values to people. All tables make their columns and cells with them. Some convert the settings
-/// of a study to readable text.
+/// Functions that make texts, table columns and table cells for people from the values of a result, and readable texts
+/// from the settings of a study.
 namespace poesy {
 
-/// The index of a response in the result. Precondition: the result has the response.
+/// The index of the response with this name in StoredResult::responses. Precondition: the result has the response.
 std::size_t response_named(const StoredResult& result, std::string_view name);
 
 std::string count_text(std::uint64_t count);  ///< A whole number with its digits in groups of three: "17 380 000".
 /// A number with a noun: "1 pose", "3 poses".
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many);
 std::string number_text(double value, int digits = 4);  ///< A number to this many significant digits; "-" for NaN.
-/// A share in percent, without the sign "%": "1.25", "99.73"; "-" for NaN. Up to 90 %, three significant digits are
-/// shown. Above 90 %, so many decimals are shown that the difference from 100 % has three digits. Trailing zeros are
-/// left out.
+/// A share (0 to 1) in percent, without the sign "%": "1.25", "99.73"; "-" for NaN. Up to 90 %, three significant
+/// digits are shown. Above 90 %, so many decimals are shown that the difference from 100 % has three significant
+/// digits. Trailing zeros are left out.
 std::string percent_number(double share);
 /// A share in percent as percent_number() gives it, with the sign: "99.73 %"; "-" for NaN.
 std::string percent_text(double share);
-/// The unit in which results show this quantity, "mm"; empty if the quantity has no unit.
+/// The unit in which results show a quantity, such as "mm"; empty if the quantity has no unit.
 std::string unit_text(const NamedUnit& named);
 
-std::vector<std::string> names_of(const std::vector<NamedUnit>& things);  ///< The names of the things, in order.
+std::vector<std::string> names_of(const std::vector<NamedUnit>& things);  ///< The names of these quantities.
 
 /// A list of names that is cut after `most` names: "a, b, c and 3 more".
 std::string some_names(const std::vector<std::string>& names, std::size_t most = 5);
@@ -54,13 +54,14 @@ std::string metric_text(const StoredResult& result);
 /// A value of a response (SI) as text in the unit that results show: "0.05 mm".
 std::string response_text(const NamedUnit& response, double si);
 
-/// The coordinates of a pose in the units that results show, to three digits: "z -190 mm, beta 20 deg, gamma -30 deg".
-/// On a trajectory the time comes first: "t 1.18 s, ...". Empty for a pose that the result does not have.
+/// The coordinates of a pose in the units that results show, to three significant digits: "z -190 mm, beta 20 deg,
+/// gamma -30 deg". On a trajectory the time comes first: "t 1.18 s, ...". Empty if the result has no pose with this
+/// index.
 std::string coordinates_text(const StoredResult& result, std::size_t pose);
 /// A pose with its coordinates: "pose 14 (z -190 mm)".
 std::string place_text(const StoredResult& result, std::size_t pose);
 
-/// A column of words. dispensable: see Column::dispensable; the same in the functions below.
+/// A column of words. dispensable: see Column::dispensable; the functions below have the same parameter.
 Column text_column(std::string name, std::string heading, int dispensable = 0);
 /// A column of numbers. unit: unit of all numbers; empty if the numbers have no unit, or have different units.
 Column number_column(std::string name, std::string heading, std::string_view unit = "", int dispensable = 0);
@@ -75,9 +76,9 @@ struct FilledColumn {
 /// Adds these columns to a table, and a row for each index in `positions`. The columns' functions make the row's cells.
 void fill(Table& table, const std::vector<std::size_t>& positions, const std::vector<FilledColumn>& columns);
 
-/// A column with the names of things. word: heading of the column. `things` must outlive the returned column.
+/// A column with the names of these quantities. word: heading of the column. `things` must outlive the returned column.
 FilledColumn name_column(const std::vector<NamedUnit>& things, const std::string& word);
-/// A column with the units in which results show things. `things` must outlive the returned column.
+/// A column with the units in which results show these quantities. `things` must outlive the returned column.
 FilledColumn unit_column(const std::vector<NamedUnit>& things);
 
 std::vector<std::size_t> positions(std::size_t count);  ///< The indices 0, 1, ..., count - 1.
@@ -88,29 +89,31 @@ Cell number_cell(double value, int digits = 4);  ///< A cell with a number to th
 Cell value_cell(double si, const NamedUnit& named, int digits = 4);
 Cell count_cell(std::uint64_t count);  ///< A cell with a whole number, with all its digits.
 Cell percent_cell(double share);       ///< A cell with a share, for a percent_column().
-/// A cell with a sensitivity index, or with an end of its interval, shown as index * scale. An index whose magnitude is
-/// below `rounding` (see index_rounding()) is shown as 0. If rounding would also hide an index that is large enough to
-/// matter (is_too_small_to_tell()), the cell has the text kTooSmall and no number.
+/// A cell with a sensitivity index, or with an end of its interval. index: value in SI. scale: factor that converts the
+/// index to the number shown. An index whose magnitude is below `rounding` (see index_rounding()) is shown as 0. If
+/// rounding would also hide an index that is large enough to matter (is_too_small_to_tell()), the cell has the text
+/// kTooSmall and no number.
 Cell index_cell(double index, double scale, double rounding);
 
 /// The text of an index_cell() if rounding hides the index.
 inline constexpr std::string_view kTooSmall = "rounding";
 
-/// Converts a value that study_setting() returned to a text for people: without quotes and braces, with quantities in
-/// mm and deg.
+/// Makes a text for people from the value of a setting as study_setting() gives it: without quotes and braces, with
+/// quantities in mm and deg.
 std::string readable_setting(std::string_view value);
 
-/// Whether all samples of the result were solved to first order in the errors. Such responses are linear in the errors,
-/// or norms of linear functions, so they do not show whether the responses of the mechanism are linear.
+/// Returns true if all samples of the result were solved to first order in the errors. All responses are then linear in
+/// the errors, or norms of linear functions, so the result cannot show whether the mechanism is linear.
 bool is_first_order(const StoredResult& result);
 
-/// What tables and texts say of a result whose samples were all solved to first order.
+/// The words with which tables and texts mark a result whose samples were all solved to first order.
 inline constexpr std::string_view kFirstOrder = "solved to first order in the errors";
 
-/// The full names and readable values of all settings of a resolved study, except those of no section, as its title.
+/// The full names ("section.key") and readable values of the settings of a resolved study, without keys outside all
+/// sections, such as the title.
 std::vector<std::pair<std::string, std::string>> readable_settings(std::string_view study_text);
 
-/// The value of a key of a section in a resolved study, as a text for people.
+/// The value of a key in a section of a resolved study, as a text for people.
 std::string readable_setting(std::string_view study_text, std::string_view section, std::string_view key);
 
 }  // namespace poesy

@@ -16,7 +16,8 @@
 namespace poesy {
 namespace {
 
-/// A zone as text: "position 0.05 A|B"; "-" if the feature has no such zone.
+/// A zone as text, with its size in mm: "position 0.05 A|B"; "-" if the feature has no such zone. key: type of the
+/// zone. size: m. datums: "-" if there are none.
 std::string zone_text(const std::string& key, double size, const std::string& datums) {
   if (key == "-") return key;
   const bool is_size = key == "tolerance";
@@ -36,9 +37,9 @@ std::size_t measured_errors(const StoredResult& result, std::size_t q) {
       result.measured.names, [&](const std::string& error) { return is_of_feature(*result.drawing, q, error); }));
 }
 
-/// Returns true if the zones of a feature are between two planes, so that their size is no diameter. The zones of a
-/// plane always are. Those of an axis or a point are if it has errors in only one of the directions x and y. q: index
-/// of the feature in the result.
+/// Returns true if the zones of a feature lie between two planes, so that their size is a width and not a diameter.
+/// This holds for the zones of a plane face, and for those of an axis or a point that has errors in only one of the
+/// directions x and y. q: index of the feature in the result.
 bool is_between_planes(const StoredResult& result, std::size_t q) {
   const DrawingResult& found = *result.drawing;
   const std::string& kind = found.kind(q);
@@ -51,7 +52,8 @@ bool is_between_planes(const StoredResult& result, std::size_t q) {
   return (has(x) || has(lean_x)) != (has(y) || has(lean_y));
 }
 
-/// The cell of a zone, with a tolerance frame unless the zone is that of a distance or a clearance.
+/// The cell of a zone. It has a tolerance frame, except for the tolerance of a distance, for a clearance, and if errors
+/// of the feature were measured. q: index of the feature in the result. size: m.
 Cell zone_cell(const StoredResult& result, std::size_t q, const std::string& key, double size,
                const std::string& datums) {
   if (key != "-" && measured_errors(result, q) > 0) {

@@ -11,8 +11,8 @@
 namespace poesy {
 
 /// The table of the drawing's features, ordered by their effect on a response, with their shares in the response's
-/// worst case. None if the result has no features, or if the response is neither signed nor the norm of signed
-/// responses.
+/// worst case. response: index of the response. None if the result has no features, or if the response is neither
+/// signed nor the norm of signed responses.
 std::optional<Table> drawing_table(const StoredResult& result, std::size_t response);
 
 /// For each error, the name of the feature to which it belongs, or its own name if it belongs to none.

@@ -10,14 +10,15 @@ namespace poesy {
 
 /// The distributions and sizes with which the errors of a result were drawn. Examples: "linear: distribution = normal,
 /// sigma = 0.02 mm" if the study sets sizes only by dimension, "24 normal with standard deviations of 0.002 to 0.02 mm"
-/// if zones, overrides or measured parts set some of them. If the kind of study chose the sizes itself, the result is
-/// StudyWords::drawn. words: the texts of the result's kind.
+/// if zones, overrides or measured parts set some of them. Returns StudyWords::drawn if the kind of study chose the
+/// sizes itself. words: the texts of the kind of study.
 std::vector<std::string> drawn_sizes(const StoredResult& result, const StudyWords& words);
 
-/// How many errors the table of given machines states, and how many are drawn; empty if there is no such table.
+/// A text with the number of errors that errors.machines gives, and the number that is drawn; empty if the study has no
+/// errors.machines.
 std::string given_errors_text(const StoredResult& result);
 
-/// The seed of the samples that the result shows; empty if no errors are drawn.
+/// The seed with which the errors of the result were drawn, as text; empty if no errors are drawn.
 std::string seed_text(const StoredResult& result, const StudyWords& words);
 
 }  // namespace poesy

@@ -30,7 +30,8 @@ std::string frame_name(const Sketch& sketch, std::size_t limb, std::size_t frame
   return joint_words(sketch, limb, joint);
 }
 
-/// The first cells of a row: pose, limb, and the frame or joint that the row describes.
+/// The first cells of a row: pose, limb, and the frame or joint that the row describes. limb: counted from 0, and shown
+/// from 1.
 std::vector<Cell> begin_row(std::size_t pose, std::size_t limb, const char* what, std::size_t number,
                             const std::string& name) {
   return {count_cell(pose), count_cell(limb + 1), text_cell(what), count_cell(number), text_cell(name)};

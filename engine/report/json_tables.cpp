@@ -63,7 +63,7 @@ static void to_json(Json& json, const SolveCounts& solves) {
 
 namespace {
 
-/// The seed in the text of the result's study; null if the text has none.
+/// The seed in the study of the result; null if the study states none.
 Json seed_of(const StoredResult& result) {
   const Json seed = Json::parse(study_setting(result.study_text, "run", "seed"), nullptr, false);
   return seed.is_number_unsigned() ? seed : Json(nullptr);
@@ -98,7 +98,8 @@ Json ranked_json(const RankedResult& ranked) {
   return all;
 }
 
-/// JSON as text. The library escapes only control characters below U+0020, so this function escapes the others.
+/// JSON as text. The library escapes only control characters below U+0020, so this function escapes the other control
+/// characters.
 std::string text_of(const Json& all) {
   const std::string json = all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   std::string text;

@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kMostRowsOfAPage = 40;
 constexpr double kJournalColumn = 85.0;  ///< width in mm above which a table spans two columns of a journal
 
-/// Returns true if all names of a list "low, high" are among these.
+/// Returns true if all names of a list, such as "low, high", are in `these`.
 bool are_all_among(std::string_view list, std::span<const std::string> these) {
   for (std::size_t from = 0; from < list.size();) {
     const std::size_t end = std::min(list.find(", ", from), list.size());
@@ -30,8 +30,9 @@ bool are_all_among(std::string_view list, std::span<const std::string> these) {
   return true;
 }
 
-/// The clauses of a note that speak of columns which are printed: "index: ...; low, high: ..." without columns low and
-/// high is "index: ...". A clause without names of columns goes with the clause before it.
+/// The clauses of a note about columns that are printed: without the columns low and high, "index: ...; low, high: ..."
+/// becomes "index: ...". A clause that names no column is kept or left out with the clause before it. left_out:
+/// headings of the columns that are not printed.
 std::string note_of(const std::string& note, std::span<const std::string> left_out) {
   std::string text;
   bool speaks = true;
@@ -46,8 +47,8 @@ std::string note_of(const std::string& note, std::span<const std::string> left_o
   return text;
 }
 
-/// The digits of a number from the first that is not zero: 3 in "-0.0204". Zeros before an exponent or at the end
-/// count.
+/// The number of digits of a number, counted from the first that is not zero: 3 in "-0.0204". Zeros at the end of the
+/// number, or before its exponent, count.
 std::size_t significant_digits(std::string_view number) {
   std::string digits(number.substr(0, number.find_first_of("eE")));
   std::erase_if(digits, [](char c) { return c < '0' || c > '9'; });
@@ -55,8 +56,8 @@ std::size_t significant_digits(std::string_view number) {
   return first == std::string::npos ? 0 : digits.size() - first;
 }
 
-/// Gives the numbers of a column equally many digits: as many as the number with a decimal point that has most. So
-/// "2.63" beside "2.683" becomes "2.630". Only zeros are added, which rounding had removed.
+/// Gives the numbers of a column the same number of digits: the largest that a number with a decimal point has. So
+/// "2.63" beside "2.683" becomes "2.630". Only zeros that rounding had removed are added. c: index of the column.
 void even_digits(Table& table, std::size_t c) {
   std::size_t most = 0;
   for (const std::vector<Cell>& row : table.rows) {
@@ -74,7 +75,7 @@ void even_digits(Table& table, std::size_t c) {
   }
 }
 
-/// The headings of the columns that only the first of two tables has.
+/// The headings of the columns that are in the whole table, but not in the part.
 std::vector<std::string> missing_headings(const Table& whole, const Table& part) {
   std::vector<std::string> missing;
   for (const Column& column : whole.columns) {
@@ -85,7 +86,8 @@ std::vector<std::string> missing_headings(const Table& whole, const Table& part)
   return missing;
 }
 
-/// The table as a paper prints it: even digits, the columns that fit, and notes on these.
+/// The table as a paper prints it: equally many digits in each column of numbers, only the columns that fit, and no
+/// notes on the other columns.
 Table printed(Table table, double millimetres) {
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     if (table.columns[c].kind == Column::Kind::number) even_digits(table, c);
@@ -104,12 +106,12 @@ template <class Things, class Text>
 std::string line_of(const Things& things, const Text& text) {
   std::string line;
   for (std::size_t c = 0; c < things.size(); ++c) line += (c == 0 ? "" : " & ") + text(c);
-  // A row that begins with a bracket or an asterisk would be read as an argument of the row before.
+  // LaTeX would read a bracket or an asterisk at the start of a row as an argument of the line break before it.
   if (line.starts_with('[') || line.starts_with('*')) line.insert(0, "{}");
   return line + " \\\\\n";
 }
 
-/// The headings in one line, or in two if a column needs two.
+/// The headings in one line, or in two lines if one of them needs two.
 std::string heading_lines(const std::vector<ColumnLayout>& layout) {
   const bool two = std::ranges::any_of(layout, [](const ColumnLayout& one) { return !one.upper.empty(); });
   return (two ? line_of(layout, [&](std::size_t c) { return layout[c].upper; }) : "") +

@@ -15,14 +15,15 @@ namespace poesy {
 namespace {
 
 constexpr double kPointsPerMillimetre = 72.27 / 25.4;
-/// Kept free in mm, because the estimated widths are without kerning, which can make words wider.
+/// Width in mm that stays free, because the estimates ignore kerning, which can make words wider.
 constexpr double kReserve = 1.0;
-/// The least width in points of a column of words that is broken into lines, unless a word is wider.
+/// The least width in points of a column of words that is broken into lines, if no single word is wider.
 constexpr double kLeastParagraph = 60.0;
 
 bool is_interval(const Column& column) { return heading_of(column) == "low" || heading_of(column) == "high"; }
 
-/// Returns true if the column belongs to the answer of a table, whatever its value is.
+/// Returns true if the column has limits, units, values or ends of intervals. Such columns are left out after all
+/// others.
 bool is_of_the_answer(const Column& column) {
   constexpr std::array<std::string_view, 3> kHeadings{"limit", "unit", "value"};
   return is_interval(column) || std::ranges::find(kHeadings, heading_of(column)) != kHeadings.end();
@@ -33,10 +34,10 @@ double cell_width(const Cell& cell, Column::Kind kind) {
   return is_number ? latex_number_width(cell.text) : latex_width(cell.text);
 }
 
-/// The widths that a column can have.
+/// The smallest and the largest width of a column, points.
 struct Widths {
-  double least;    ///< with the cells broken into lines
-  double natural;  ///< without broken cells
+  double least;    ///< width with the cells broken into lines
+  double natural;  ///< width with each cell in one line
 };
 
 double widest_word(std::string_view text) {
@@ -49,7 +50,8 @@ double widest_word(std::string_view text) {
   return widest;
 }
 
-/// A heading with its unit in LaTeX, and its width. It has two lines if one is wider than the cells.
+/// A heading with its unit in LaTeX, and its width in points. It has two lines if in one line it would be wider than
+/// the cells and the second line makes it narrower.
 struct Heading {
   std::string upper;
   std::string lower;
@@ -95,7 +97,7 @@ Widths widths_of(const Table& table, std::size_t c) {
   return {std::max({word, heading, std::min(natural, kLeastParagraph)}), natural};
 }
 
-/// The room for the columns of a table in points, without the gaps between them.
+/// The width that the columns of a table may have together, points: the table without the gaps between columns.
 double room_of(const Table& table, double millimetres) {
   return (millimetres - kReserve) * kPointsPerMillimetre - kColumnGap * static_cast<double>(table.columns.size() - 1);
 }
@@ -118,7 +120,8 @@ Table with_columns(const Table& table, const Keep& keep) {
   return made;
 }
 
-/// The first column of a type that is not dispensable, which always stays: the names, or the most important number.
+/// The index of the first column that is of one of these kinds and not dispensable. It always stays in the table: it
+/// has the names of the rows, or the most important number.
 std::size_t first_of(const Table& table, std::span<const Column::Kind> kinds) {
   const auto at = std::ranges::find_if(table.columns, [&](const Column& column) {
     return column.dispensable == 0 && std::ranges::find(kinds, column.kind) != kinds.end();
@@ -147,22 +150,23 @@ Table with_short_headings(Table table) {
   return table;
 }
 
-/// The column of the value to which an interval belongs, or the column itself.
+/// The index of the column with the value to which the interval in column c belongs; c itself if column c has no
+/// interval.
 std::size_t value_of(const Table& table, std::size_t c) {
   std::size_t value = c;
   while (value > 0 && is_interval(table.columns[value])) --value;
   return value;
 }
 
-/// The dispensability of a column for a paper; 0 if it is not left out with the dispensable columns. Intervals and
-/// units go with the number to their left.
+/// How dispensable a column is in a paper; 0 if step 2 of fitted() does not leave it out. Intervals and units are as
+/// dispensable as the number to their left.
 int dispensable(const Table& table, std::size_t c) {
   std::size_t number = c;
   while (number > 0 && (is_interval(table.columns[number]) || heading_of(table.columns[number]) == "unit")) --number;
   return is_of_the_answer(table.columns[number]) ? 0 : table.columns[number].dispensable;
 }
 
-/// The table without its most dispensable group of columns; none if no column is dispensable.
+/// The table without the columns that are most dispensable; none if no column is dispensable.
 std::optional<Table> without_a_group(const Table& table) {
   int most = 0;
   for (std::size_t c = 0; c < table.columns.size(); ++c) most = std::max(most, dispensable(table, c));
@@ -170,15 +174,16 @@ std::optional<Table> without_a_group(const Table& table) {
   return with_columns(table, [&](std::size_t c) { return dispensable(table, c) < most; });
 }
 
-/// Whether a column goes if this one is left out: the interval of its value, or the other end of its interval.
+/// Returns true if column `other` is left out together with column `left_out`: if both are the same column, if `other`
+/// is an end of the interval of `left_out`, or if both are the ends of one interval.
 bool goes_with(const Table& table, std::size_t other, std::size_t left_out) {
   if (other == left_out) return true;
   if (always_stays(table, other) || !is_interval(table.columns[other])) return false;
   return value_of(table, other) == value_of(table, left_out);
 }
 
-/// Whether a column has the units of columns that have been left out. The columns to its left that it may belong to
-/// have no unit of their own, or one per unit of the error.
+/// Returns true for a column of units if no number to its left needs it: a number without a unit in its heading, or
+/// with a unit such as "mm/unit".
 bool is_orphan_unit(const Table& table, std::size_t c) {
   if (heading_of(table.columns[c]) != "unit") return false;
   return std::ranges::none_of(
@@ -192,8 +197,8 @@ Table without_orphan_units(const Table& table) {
   return with_columns(table, [&](std::size_t c) { return !is_orphan_unit(table, c); });
 }
 
-/// The table without the rightmost column that is not of the answer, or without the rightmost, and without what goes
-/// with it; none if only the first column and the first number are left.
+/// The table without one more column and its interval: the rightmost column for which is_of_the_answer() is false, or
+/// the rightmost of all if there is no such column. None if only the columns that always stay are left.
 std::optional<Table> without_a_column(const Table& table) {
   for (const bool also_answer : {false, true}) {
     for (std::size_t c = table.columns.size(); c-- > 0;) {
@@ -204,7 +209,8 @@ std::optional<Table> without_a_column(const Table& table) {
   return std::nullopt;
 }
 
-/// Makes the widest columns narrower, not below their least widths, until all fit in the room.
+/// Makes the widest columns narrower until the columns together are as narrow as `room` (points), but no column
+/// narrower than its least width.
 void narrow(std::vector<ColumnLayout>& layout, const std::vector<Widths>& widths, double room) {
   const auto total = [&] {
     return std::transform_reduce(layout.begin(), layout.end(), 0.0, std::plus(),

@@ -65,16 +65,17 @@ constexpr std::array kSigns{Sign{"\u00b1", "$\\pm$"},     Sign{"\u2300", "\\O{}"
                             Sign{"\u03c3", "$\\sigma$"},  Sign{"\u03c6", "$\\phi$"},     Sign{"\u03c8", "$\\psi$"},
                             Sign{"\u03c9", "$\\omega$"},  Sign{"\u0394", "$\\Delta$"}};
 
-/// The widths in tenths of a point of the characters of ASCII from the blank to "~", in Computer Modern Roman of 8
-/// points. Those that are escaped have the width of their command.
+/// The widths of the ASCII characters from the blank to "~", in tenths of a point, in Computer Modern Roman of 8
+/// points. A character that is escaped has the width of what its command prints.
 constexpr std::array kWidths{29, 24, 43, 71, 43, 71, 67, 24, 34, 34, 43, 67, 24, 29, 24, 43, 43, 43, 43,
                              43, 43, 43, 43, 43, 43, 43, 24, 24, 67, 67, 67, 41, 67, 64, 61, 62, 65, 58,
                              56, 67, 64, 31, 44, 67, 54, 78, 64, 67, 58, 67, 63, 48, 62, 64, 64, 88, 64,
                              64, 52, 24, 43, 24, 43, 31, 24, 43, 48, 38, 48, 38, 26, 43, 48, 24, 26, 45,
                              24, 71, 48, 43, 48, 45, 34, 34, 34, 48, 45, 62, 45, 45, 38, 43, 24, 43, 43};
-constexpr double kWidestSign = 8.6;  ///< of those in kSigns; also of a letter beyond ASCII
-constexpr double kMinus = 6.7;       ///< the width of a minus sign in mathematics
-constexpr double kTimesTen = 19.4;   ///< the width of "\times10" with its spaces
+/// Largest width of a sign in kSigns, in points; also used for letters beyond ASCII.
+constexpr double kWidestSign = 8.6;
+constexpr double kMinus = 6.7;      ///< width of a minus sign in mathematics, points
+constexpr double kTimesTen = 19.4;  ///< width of "\times10" with its spaces, points
 constexpr double kExponentSign = 5.8;
 constexpr double kExponentDigit = 3.7;
 

@@ -13,7 +13,7 @@ inline constexpr std::string_view kPictureMark = "<!-- picture of poesy -->";
 /// The mechanism at home as an SVG document, seen from the front, from the side, from above, and in space. Each limb
 /// has its own colour. A joint has the glyph of its type, filled if a drive moves the joint, and a tick along its axis.
 /// A ring surrounds joints whose frames have errors. Features of the drawing are bars along axes, plates in planes, and
-/// dots; their titles are their names and zones. There is a scale bar. All texts are escaped.
+/// dots; a tooltip gives the name and the zones of a feature. There is a scale bar. All texts are escaped.
 std::string mechanism_picture(const Sketch& sketch, std::string_view title);
 
 }  // namespace poesy

@@ -45,13 +45,13 @@ std::string change_text(const Merit& a, const MeritChange& change) {
 }
 
 std::string interval_text(const Merit& a, const MeritChange& change) {
-  // There is no text if the interval is not known or the change is exact.
+  // The text is empty if the interval is not known or the change is exact.
   if (std::isnan(change.low) || change.low == change.high) return {};
   const double scale = a.unit == "%" ? 1.0 : 100.0 / std::abs(a.value);
   return fmt::format(", interval {:+.3g} to {:+.3g}", scale * change.low, scale * change.high);
 }
 
-/// "the yield is 8.96 % in A and 15.7 % in B".
+/// The values in both results: "the yield is 8.96 % in A and 15.7 % in B". letter: letter of the second result.
 std::string values_text(const Merit& a, const Merit& b, char letter) {
   return fmt::format("the {} is {} in A and {} in {}", a.what, text_of(a, a.value), text_of(b, b.value), letter);
 }
@@ -74,7 +74,8 @@ std::string sentence(const Merit& a, const Merit& b, char letter) {
   return fmt::format("T{}.", numbers.substr(1));
 }
 
-/// Figures of merit without a verdict, by the reason for this: what differs, and a text on each figure of merit.
+/// Figures of merit without a verdict, grouped by the reason why there is none. Each pair has the reason (what
+/// differs), and a text for each figure of merit.
 using NoVerdicts = std::vector<std::pair<std::string, std::vector<std::string>>>;
 
 void add_no_verdict(const Merit& b, char letter, std::string text, NoVerdicts& list) {
@@ -143,8 +144,8 @@ std::string remedy_text(const Merit& first, const Merit& merit, std::size_t resu
 }
 
 /// The shares of machines within each limit as figures of merit. Empty if machines are not judged, or by one limit
-/// only, because then the share within it is the yield. Few measured parts leave open more than the number of machines
-/// does, so errors drawn from them give no interval.
+/// only, because then the share within it is the yield. If errors are drawn from measured parts, the shares have no
+/// intervals, because those of Clopper and Pearson would leave out the uncertainty from the small number of parts.
 std::vector<Merit> limit_merits(const StoredResult& result) {
   if (!result.verdicts || !result.verdicts->yield || result.verdicts->limits.size() < 2) return {};
   const YieldVerdict& yield = *result.verdicts->yield;
@@ -164,7 +165,7 @@ std::vector<Merit> limit_merits(const StoredResult& result) {
   return list;
 }
 
-/// The caption of the table of these figures of merit. first: name of the first of them.
+/// The caption of the table of these figures of merit. first: name of the figure of merit in the first row.
 std::string merits_caption(std::span<const std::vector<Merit>> results, const std::string& first) {
   if (results.size() > 2) return "Which is better: each against A";
   const std::vector<OtherRequirement>& others = find(results[1], first)->others;
@@ -172,7 +173,7 @@ std::string merits_caption(std::span<const std::vector<Merit>> results, const st
   return fmt::format("Which is better: no verdict on the {}, because the {} differ", first, topics_text(others));
 }
 
-/// Poses are from tables if those of one of the results are.
+/// Tells whether the poses of two results come from tables: yes, if those of at least one of them do.
 PosesFrom poses_from(const ReportKind& kind, const StoredResult& a, const StoredResult& b) {
   return kind.words(a).own_poses && kind.words(b).own_poses ? PosesFrom::study : PosesFrom::table;
 }
@@ -249,7 +250,7 @@ std::optional<Table> merits_table(std::span<const std::vector<Merit>> results) {
   if (shared.empty()) return std::nullopt;
   Table table{.name = "merits",
               .caption = merits_caption(results, shared.front()),
-              // A narrow page hides the last columns first.
+              // A narrow page hides the dispensable columns first, and then the others from right to left.
               .columns = {text_column("quantity", "quantity"), text_column("result", "in"),
                           text_column("verdict", "verdict"), number_column("change", "change"),
                           number_column("change_low", "low", "", 1), number_column("change_high", "high", "", 1),

@@ -16,13 +16,13 @@ namespace poesy {
 
 struct ReportKind;
 
-/// A setting in which two studies ask for something else, so that a figure of merit does not say which design is
-/// better.
+/// A setting that differs between two studies and changes what they require of a design. Because of it, a figure of
+/// merit does not tell which design is better.
 struct OtherRequirement {
   std::string_view topic;  ///< what the setting is about: "limits", "wanted yields", "draws" or "poses"
   std::string name;        ///< full name of the setting: "analysis.limits.gap"
-  std::string in_a;        ///< value in result A, for people; empty: none
-  std::string in_b;        ///< value in the other result, for people; empty: none
+  std::string in_a;        ///< value in result A, as text for people; empty: not set
+  std::string in_b;        ///< value in the other result, as text for people; empty: not set
 
   bool operator==(const OtherRequirement&) const = default;  ///< Returns true if all members are equal.
 };
@@ -35,41 +35,41 @@ struct Merit {
   double low = kNaN;       ///< lower end of the confidence interval; NaN if there is none
   double high = kNaN;      ///< upper end of the confidence interval; NaN if there is none
   bool most_best = false;  ///< true if a larger value is better, false if a smaller one is
-  bool narrows = true;     ///< true if more samples make its interval narrower
-  std::string note = {};   ///< a sentence on what its interval does not contain; empty: none
+  bool narrows = true;     ///< true if more samples make the interval narrower
+  std::string note = {};   ///< sentence on what the interval does not include; empty: none
   /// Requirements in which the result differs from the first of the compared results; empty: none.
   std::vector<OtherRequirement> others = {};
 };
 
-/// What the yield is called as a figure of merit.
+/// The name of the yield as a figure of merit (Merit::what).
 inline constexpr std::string_view kYieldMerit = "yield";
 
-/// What the cost of an allocation is called as a figure of merit.
+/// The name of the cost of an allocation as a figure of merit (Merit::what).
 inline constexpr std::string_view kCostMerit = "cost of all parts";
 
-/// The beginning of what the share of machines within one limit is called as a figure of merit; the name of the limited
-/// response follows.
+/// The name of the share of machines within one limit as a figure of merit, without the name of the limited response
+/// that follows.
 inline constexpr std::string_view kLimitMerit = "share within the limit of ";
 
-/// The largest number of results that can be compared, because letters name them.
+/// The largest number of results that can be compared, because each has a letter from A to Z.
 inline constexpr std::size_t kMostResults = 26;
 
 /// The letter for one of several results: 'A', 'B', ... Precondition: result < kMostResults.
 char letter_of(std::size_t result);
 
-/// The response for which results are compared by totals: the wanted one, otherwise default_ranking() of the first
-/// result, otherwise the first response, in each case only if all results have this response. Empty if they have no
-/// response in common. wanted: name of a response; may be empty.
+/// The response whose figures of merit, such as a root mean square, are compared: `wanted` if all results have it,
+/// otherwise default_ranking() of the first result if all results have that, otherwise the first response that all
+/// results have. Empty if they have no response in common. wanted: name of a response; may be empty.
 std::string compared_response(std::span<const StoredResult* const> results, const std::string& wanted = {});
 
 /// The yield of machines as a figure of merit. If errors are drawn from measured parts, the interval also includes the
 /// uncertainty from the small number of measured parts.
 Merit yield_merit(const YieldVerdict& yield);
 
-/// The figures of merit of each of these results; totals are those of compared_response(). wanted: as there. If
-/// machines are judged by several limits, the share of them within each limit is a figure of merit, too. The lists are
-/// empty if the kind of study has no figures of merit, or if the results have different metrics, because with different
-/// metrics equal names mean different things.
+/// The figures of merit of each of these results; figures of merit of a response, such as its root mean square, are
+/// those of compared_response(). If machines are judged by several limits, the share of machines within each limit is
+/// one as well. The lists are empty if the kind of study has no figures of merit, or if the results have different
+/// metrics, because then equal names mean different things. wanted: see compared_response().
 std::vector<std::vector<Merit>> compared_merits(const ReportKind& kind, std::span<const StoredResult* const> results,
                                                 const std::string& wanted = {});
 
@@ -98,7 +98,8 @@ std::optional<Table> merits_table(std::span<const std::vector<Merit>> results);
 /// A sentence on each figure of merit that both results have: "B is better: the yield is 8.96 % in A and 15.7 % in B
 /// (+6.74 percentage points, interval +5.5 to +8.0)." Figures of merit with other requirements come first, without a
 /// verdict: "No verdict, because the limits differ (analysis.limits.gap: 0.15 mm in A, 0.2 mm in B): the yield is 81.3
-/// % in A and 96.3 % in B." Empty if they have none in common. letter: the letter of the second result.
+/// % in A and 96.3 % in B." Empty if the results have no figure of merit in common. letter: the letter of the second
+/// result.
 std::string merit_sentences(const std::vector<Merit>& a, const std::vector<Merit>& b, char letter = 'B');
 
 /// A table of the settings of the studies of two results, in the order of the first result, a: the settings that are

@@ -24,7 +24,8 @@ std::string setting(const StoredResult& result, std::string_view section, std::s
   return readable_setting(result.study_text, section, key);
 }
 
-/// "The geometry differs from that of the mechanism's file: a = 150 mm (there 200 mm)."
+/// The sentence on a changed geometry: "The geometry differs from that of the mechanism's file: a = 150 mm (there 200
+/// mm)."
 std::string geometry_sentence(const Study* study) {
   if (study == nullptr) return {};
   const std::vector<GeometryParameter>& known = study->model().geometry;
@@ -39,7 +40,7 @@ std::string geometry_sentence(const Study* study) {
                      study->mechanism.file ? "'s file" : " as published", fmt::join(changes, ", "));
 }
 
-/// "The equations were solved to first order in the errors."
+/// The sentence on the fidelity: "The equations of the mechanism were solved to first order in the errors."
 std::string fidelity_sentence(const StoredResult& result) {
   const std::string fidelity = setting(result, "mechanism", "fidelity");
   if (fidelity.empty()) return {};
@@ -88,7 +89,7 @@ std::string zones_sentence(const StoredResult& result, const StudyWords& words) 
                             text.empty() ? "" : " ", fmt::join(parts, ", "));
 }
 
-constexpr std::size_t kMostNamed = 5;  // errors that a sentence names
+constexpr std::size_t kMostNamed = 5;  // largest number of errors that a sentence names
 
 /// The sentence on measured errors: "Measured errors: leg_1 (11 parts, mean 0.01 mm)."
 std::string measured_sentence(const StoredResult& result) {
@@ -128,8 +129,8 @@ std::string background_sentence(const StoredResult& result, const StudyWords& wo
   return fmt::format("Background, the same in all machines: {}.", fmt::join(parts, ", "));
 }
 
-/// A clause on what machines have of their own: ", each with one set of errors at all poses, except 4 errors that are
-/// drawn anew at each pose (play_x_1, ...)".
+/// A clause on how often a machine draws its errors: ", each with one set of errors at all poses, except 4 errors that
+/// are drawn anew at each pose (play_x_1, ...)".
 std::string draws_of_machines(const StoredResult& result) {
   std::vector<std::string> anew;
   std::size_t drawn = 0;
@@ -201,7 +202,7 @@ std::string limits_sentence(const StoredResult& result) {
     text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", response.name,
                         limit_text(one.limit, [&](double value) { return response_text(response, value); }));
   }
-  if (text.empty()) {  // A certificate judges all limits together, and a sweep keeps no verdict on each of them.
+  if (text.empty()) {  // certificates judge all limits together, and sweeps keep no verdicts on single limits
     for (const StudySetting& one : study_settings(result.study_text)) {
       if (one.section != "analysis.limits") continue;
       text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", one.key, readable_setting(one.value));
@@ -223,7 +224,7 @@ std::string repeat_sentence(const StoredResult& result, const StudyWords& words)
                      result.content_sha256);
 }
 
-/// What the kind adds; nothing if it adds nothing.
+/// The text and the sources that the kind of study adds to the method; empty if it adds nothing.
 MethodWords method_of(const ReportKind& kind, const StoredResult& result) {
   return kind.method == nullptr ? MethodWords() : kind.method(result);
 }
@@ -246,7 +247,7 @@ std::string method_text(const ReportKind& kind, const StoredResult& result, cons
 }
 
 std::string method_references(const ReportKind& kind, const StoredResult& result) {
-  // The year of another version is not known.
+  // The year is known only for the version of this program.
   const std::string year =
       result.poesy_version == poesy_version() ? fmt::format("  year = {{{}}},\n", poesy_year()) : "";
   std::string text = fmt::format(

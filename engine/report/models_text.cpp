@@ -24,7 +24,8 @@ std::string curve_text(const NamedCurve& curve, const ModelDescription& model) {
                      curve.name, curve.description, curve.start, curve.end, chart.name, origin);
 }
 
-/// The list of a model's responses, with the model's metric if it has one. usual: true if the metric is the default.
+/// The list of a model's responses, with the model's metric if it has one. usual: true if a study that states no metric
+/// has this one.
 std::string responses_text(const ModelDescription& model, bool usual) {
   std::string text = "\nresponses";
   if (!model.metric.empty()) text += fmt::format(" by [solver] metric = \"{}\"", model.metric);

@@ -13,8 +13,8 @@ namespace {
 
 bool has_yield(const StoredResult& result) { return result.verdicts && result.verdicts->yield; }
 
-/// The keys that have different values in two studies; none if a key is in only one of them, or if their yields do not
-/// compare because a key is a requirement.
+/// The keys that have different values in two studies, without those of [run]. Empty if a key is in only one of the
+/// studies, or if one of the keys is a requirement, so that the yields cannot be compared.
 std::vector<std::string> keys_that_differ(const StoredResult& a, const StoredResult& b) {
   std::vector<std::string> keys;
   for (const std::vector<Cell>& row : settings_table(a, b, 1, false).rows) {

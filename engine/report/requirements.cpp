@@ -17,17 +17,17 @@ constexpr std::string_view kPoses = "poses";
 constexpr std::string_view kDrawn = "draws";
 constexpr std::string_view kMetrics = "metrics";
 
-/// Whether `setting` is the setting or section `name`, or belongs to it.
+/// Returns true if `setting` is the setting or section `name`, or belongs to this section.
 bool is_of(std::string_view setting, std::string_view name) {
   return setting.starts_with(name) && (setting.size() == name.size() || setting[name.size()] == '.');
 }
 
-/// Whether a figure of merit depends on limits that machines are judged by.
+/// Returns true if a figure of merit depends on limits by which machines are judged.
 bool judges_machines(std::string_view merit) {
   return merit == kYieldMerit || merit == kCostMerit || merit.starts_with(kLimitMerit);
 }
 
-/// Whether a setting is a limit on which the figure of merit depends. Precondition: judges_machines(merit).
+/// Returns true if a setting is a limit on which the figure of merit depends. Precondition: judges_machines(merit).
 bool is_its_limit(std::string_view setting, std::string_view merit) {
   constexpr std::string_view kLimits = "analysis.limits";
   if (!merit.starts_with(kLimitMerit)) return is_of(setting, kLimits);
@@ -42,8 +42,8 @@ std::string without_points(std::string value) {
   return value.erase(begin, end == std::string::npos ? end : end + 2 - begin);
 }
 
-/// The settings of a result on which the figure of merit depends, with their values. Metrics and draws of errors are
-/// left out, because the results themselves state them.
+/// The settings of a result on which the figure of merit depends, with their values. The metric, and how errors are
+/// drawn, are left out, because the result itself states them.
 std::map<std::string, std::string> required_settings(const StoredResult& result, std::string_view merit) {
   std::map<std::string, std::string> list;
   for (const auto& [name, value] : readable_settings(result.study_text)) {
@@ -53,15 +53,16 @@ std::map<std::string, std::string> required_settings(const StoredResult& result,
   return list;
 }
 
-/// Whether a setting of the poses explains that the poses of two results differ.
+/// Returns true if a setting of the poses is a reason why the poses of two results differ. in_a, in_b: its values.
 bool explains_poses(const std::string& name, const std::string& in_a, const std::string& in_b) {
   if (required_value(name, in_a) != required_value(name, in_b)) return true;
-  // A file may have been changed, so its name says nothing. If the numbers of points differ, they explain it.
+  // The content of a file may have changed under the same name. If only the numbers of points differ, they are the
+  // reason, but they are not a requirement.
   const bool is_of_file = name == "poses.file" || (name == "poses.trajectory" && in_a.find("file = ") != in_a.npos);
   return is_of_file && in_a == in_b;
 }
 
-/// Whether result `of` draws its error p anew at each pose.
+/// Returns true if the machines of result `of` draw its error p anew at each pose.
 bool is_per_pose(const StoredResult& of, std::size_t p) {
   return !of.factor_draws.empty() && of.factor_draws[p] == name(Draws::per_pose);
 }
@@ -82,7 +83,8 @@ void add_draws_of_errors(const StoredResult& a, const StoredResult& b, std::vect
   add(only_in_b, Draws::per_machine, Draws::per_pose);
 }
 
-/// "analysis.limits.gap: 0.15 mm in A, 0.2 mm in B", or the name alone if a value is long.
+/// A requirement with its values: "analysis.limits.gap: 0.15 mm in A, 0.2 mm in B", or its name alone if a value is
+/// long.
 std::string other_text(const OtherRequirement& other, char letter) {
   constexpr std::size_t kLong = 40;
   if (std::max(other.in_a.size(), other.in_b.size()) > kLong) return other.name;

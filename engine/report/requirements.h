@@ -11,9 +11,9 @@
 /// although the machines are the same, so it does not say that a design is better.
 namespace poesy {
 
-/// What a setting requires: "limits", "wanted yields", "draws", "metrics" or "poses". Empty if designs may differ in
-/// the setting and be compared by this figure of merit, as in a number of poses. setting: full name of the setting,
-/// "analysis.limits.gap". merit: name of the figure of merit.
+/// The topic of the requirement that a setting states: "limits", "wanted yields", "draws", "metrics" or "poses". Empty
+/// if a figure of merit can be compared although two studies differ in the setting, such as in the number of poses.
+/// setting: full name of the setting, "analysis.limits.gap". merit: name of the figure of merit.
 std::string_view required_by(std::string_view setting, std::string_view merit);
 
 /// The part of a setting's value that is a requirement: for a trajectory, the value without its number of points.
@@ -22,9 +22,9 @@ std::string required_value(const std::string& setting, const std::string& value)
 /// Where the poses of results come from: from the settings of the study, or from a table (`--poses`).
 enum class PosesFrom { study, table };
 
-/// The requirements of two results that differ and on which this figure of merit depends, without their metrics
-/// (differ_in_metric()). Settings of poses count only if the poses differ; if no setting explains why poses from tables
-/// differ, the requirement that differs is the table ("--poses").
+/// The requirements on which a figure of merit depends and in which two results differ. Different metrics are not
+/// listed (see differ_in_metric()). Settings of poses are listed only if the poses differ. If poses from tables differ
+/// and no setting explains this, the table itself ("--poses") is listed.
 std::vector<OtherRequirement> other_requirements(const StoredResult& a, const StoredResult& b, std::string_view merit,
                                                  PosesFrom poses = PosesFrom::study);
 

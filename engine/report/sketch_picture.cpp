@@ -26,7 +26,7 @@ constexpr double kMillimetres = 1e3;  // millimetres in a metre
 constexpr double kFlat = 1e-9;        // points are on one line if their hull is thinner than this share of its length
 constexpr double kSamePoint = 1.0;    // pixels; joints that are closer share a point
 constexpr double kAlong = 0.99;  // least cosine of the angle between a strut's axis and the line to the end of the limb
-constexpr double kRing = 11.0;   // radius of the ring for a link without length, pixels
+constexpr double kRing = 11.0;   // pixels, radius of the ring that shows a link without length
 constexpr double kDigit = 9.0;   // pixels, width of a limb's number
 constexpr double kArrow = 60.0;  // pixels, the longest arrow
 constexpr double kTip = 3.5;     // pixels, radius of the end of an arrow
@@ -105,14 +105,14 @@ std::vector<SketchVector> hull_of(const std::vector<SketchVector>& points) {
 /// Draws a mechanism as SVG text.
 class Drawing {
  public:
-  /// shares: null for a picture in a separate file (still_sketch()).
+  /// shares: shares of links and joints; null for a picture in a separate file (still_sketch()).
   Drawing(const Sketch& sketch, const SketchView& view, const PartShares* shares)
       : sketch_(&sketch), view_(&view), shares_(shares) {}
 
   std::string all(std::size_t mark) {
     bodies();
     for (std::size_t i = 0; i < sketch_->limbs.size(); ++i) limb(i);
-    if (!sketch_->frames.empty()) {  // without frames, features have no place
+    if (!sketch_->frames.empty()) {  // without frames, the places of features are not known
       for (const SketchedFeature& one : sketch_->features) feature(one);
     }
     if (mark < sketch_->errors.size()) frame(sketch_->errors[mark]);
@@ -137,7 +137,7 @@ class Drawing {
     text_ += svg_path(pixels, fmt::format("{} {}", points_attribute(points), attributes));
   }
 
-  /// Adds SVG content with this point as the origin.
+  /// Adds SVG content whose origin is the pixel of this point.
   void add_group(const SketchVector& point, std::string_view attributes, std::string_view content) {
     const Pixel pixel = view_->at(point);
     text_ += fmt::format("<g transform=\"translate({:.1f} {:.1f})\" {} {}>{}</g>\n", pixel.x, pixel.y,
@@ -277,7 +277,8 @@ class Drawing {
     add_group(tip, "class=\"arrow-tip\"", svg_circle({0, 0}, kTip, ""));
   }
 
-  /// The style of a link or joint: the share in percent of the largest share, for the colour, and the line width.
+  /// The style of a link or joint: the line width, and on a page also the share in percent of the largest share, by
+  /// which the page chooses the colour.
   std::string share_style(std::vector<std::vector<double>> PartShares::*parts, std::size_t i, std::size_t j) const {
     if (is_still()) return fmt::format("stroke-width=\"{:.1f}\"", kThinnest);
     const double part = shares_->largest > 0.0 ? (shares_->*parts)[i][j] / shares_->largest : 0.0;

@@ -14,7 +14,7 @@ namespace poesy {
 /// joints of a limb, between the base and the first joint, or between the last joint and the platform.
 struct PartShares {
   std::vector<std::vector<double>> links;   ///< [limbs][joints + 1] share of each link
-  std::vector<std::vector<double>> joints;  ///< [limbs][joints] share of errors between the axes of a joint
+  std::vector<std::vector<double>> joints;  ///< [limbs][joints] share of the errors between the axes of each joint
   double largest = 0.0;                     ///< largest share of all links and joints; 0: there are no shares
   /// [limbs][joints] length of the arrow along each joint's axis, relative to the longest arrow; 0: no arrow.
   std::vector<std::vector<double>> arrows;
@@ -23,14 +23,14 @@ struct PartShares {
   explicit PartShares(const Sketch& sketch);
 };
 
-/// A mechanism as SVG elements in a picture of kSketchWidth x kSketchHeight. It has links, glyphs of joints
-/// (svg_shapes.h), and the features of the drawing with their names and zones as titles. Joints that share a point are
-/// drawn side by side. Each element has its points (mm, base frame) in the attribute data-p="x,y,z x,y,z". The element
-/// of a joint also has the joint's true point in data-at, and the attributes data-limb and data-joint.
+/// A mechanism as SVG elements in a picture of kSketchWidth x SketchView::height. It has links, glyphs of joints
+/// (svg_shapes.h), and the features of the drawing with their names and zones as tooltips. Joints that share a point
+/// are drawn side by side. Each element has its points (mm, base frame) in the attribute data-p="x,y,z x,y,z". The
+/// element of a joint also has the joint's true point in data-at, and the attributes data-limb and data-joint.
 /// @{
 /// The picture for a page that sets colours and turns the picture. The width of links grows with their shares, and the
-/// CSS variable --share of links and joints is their share in percent of the largest. mark: index of the error whose
-/// frame is drawn; with an index beyond the errors, no frame is drawn.
+/// CSS variable --share of links and joints is their share in percent of the largest share. mark: index of the error
+/// whose frame is drawn; with an index beyond the errors, no frame is drawn.
 std::string turnable_sketch(const Sketch& sketch, const SketchView& view, const PartShares& shares, std::size_t mark);
 /// The picture for a separate file, with the style sheet kSketchStyle. Each limb has a colour, a ring marks joints
 /// whose frames have errors, and drives have their names.

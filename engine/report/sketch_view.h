@@ -14,8 +14,8 @@ inline constexpr double kSketchHeight = 340.0;  ///< Height of a picture, pixels
 inline constexpr double kTallHeight = 520.0;    ///< Largest height of a picture of a tall mechanism, pixels.
 
 /// A view of a mechanism without perspective. The base is turned by `yaw` about its z axis, and afterwards by `pitch`
-/// towards the reader. The script that draws the picture again after a reader turned it (html/web/robot.js) uses the
-/// same rules.
+/// towards the reader. The script that draws the picture again when a reader turns it (html/web/robot.js) uses the same
+/// rules.
 struct SketchView {
   double yaw;           ///< angle about the base's z axis, deg
   double pitch;         ///< angle at which the reader looks down, deg
@@ -32,9 +32,9 @@ struct SketchView {
   SketchVector right() const;  ///< The unit vector in the base frame that points to the right in the picture.
 };
 
-/// A view in which all of these sketches of one mechanism stay visible if the base is turned about z. For a tall
-/// mechanism the picture is higher than kSketchHeight, but at most `tallest` pixels, so that the mechanism can use its
-/// whole width.
+/// A view in which all of these sketches of one mechanism stay visible if the base is turned about z. The picture of a
+/// tall mechanism is higher than kSketchHeight, but at most `tallest` pixels, so that the mechanism fills the width of
+/// the picture.
 SketchView sketch_view(std::span<const Sketch> sketches, double yaw, double pitch, double tallest = kSketchHeight);
 
 SketchVector plus(const SketchVector& a, double scale, const SketchVector& b);  ///< The vector a + scale b.

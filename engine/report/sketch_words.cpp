@@ -25,8 +25,9 @@ bool is_of_feature(const Sketch& sketch, const SketchedError& error, std::string
   });
 }
 
-/// The words of a feature's error without the feature and without sizes: "leans to x, where x is (0.6, 0, 0.8) at home"
-/// for "bore of limb 1 leans to x: its far end against its near end, 30 mm apart, where x is (0.6, 0, 0.8) at home".
+/// The description of an error of a feature, without the name of the feature and without sizes: "leans to x, where x is
+/// (0.6, 0, 0.8) at home" for "bore of limb 1 leans to x: its far end against its near end, 30 mm apart, where x is
+/// (0.6, 0, 0.8) at home".
 std::string feature_words(std::string_view description) {
   constexpr std::string_view kLimb = " of limb ";
   constexpr std::string_view kAxes = ", where ";
@@ -45,7 +46,7 @@ std::string direction_text(const SketchVector& direction) {
   return fmt::format("({}, {}, {})", rounded(0), rounded(1), rounded(2));
 }
 
-/// The direction of an axis of a frame in the base. Empty if it is the direction of the base's axis of the same name.
+/// The direction of an axis of a frame, in the base frame. Empty if it is that of the base's axis of the same name.
 std::string direction_in_base(const SketchedFrame& frame, std::size_t axis) {
   SketchVector of_base{};
   of_base[axis] = 1.0;

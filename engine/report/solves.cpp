@@ -22,7 +22,8 @@ double max_not_converged(const StoredResult& result) {
   return share;
 }
 
-/// The warning if more than kManyNotConverged of all solves did not converge, unless kMissing applies.
+/// The warning if more than kManyNotConverged of all solves did not converge, in all cases in which kMissing does not
+/// apply.
 constexpr std::string_view kDoubt =
     " That is more than 1 %: all numbers come from the solved samples, and both ways of treating such solves are wrong "
     "where they are many. Left out, they make numbers too small, because they are mostly the large errors; included, "
@@ -32,7 +33,7 @@ constexpr std::string_view kDoubt =
 constexpr std::string_view kMissing =
     " That is more than 1 %: means, spreads and quantiles are those of the machines that can be assembled.";
 
-/// A sentence on the row (error, case or size) and the pose with the largest shares of unsolved samples: " The largest
+/// A sentence on the row (see SolveTally) and the pose with the largest shares of unsolved samples: " The largest
 /// shares: ...". Empty if there is only one row and one pose.
 std::string largest_shares_text(const StoredResult& result, const SolveTally& tally) {
   std::vector<std::string> places;
@@ -51,8 +52,8 @@ std::string count_line(std::uint64_t failed, std::uint64_t samples, const SolveC
                      percent_text(share), why_unsolved(first));
 }
 
-/// Sentences on what it means that the share of unsolved samples is above kManyNotConverged, and advice if machines
-/// cannot be assembled.
+/// Sentences on what follows if the share of unsolved samples is above kManyNotConverged, and advice if machines cannot
+/// be assembled.
 std::string consequences_text(const SolveCounts& solves) {
   const bool many = share_not_converged(solves) > kManyNotConverged;
   if (solves.not_assembled() == 0) return std::string(many ? kDoubt : "");

@@ -11,7 +11,7 @@
 /// How the solves of a result ended, and when a reader is warned of solves that did not converge.
 namespace poesy {
 
-/// If a larger share of samples has no solution, statistics over the solved samples mislead (decision D8).
+/// The share of samples without a solution above which statistics over the solved samples mislead (decision D8).
 inline constexpr double kManyNotConverged = 0.01;
 
 /// The share of samples without a solution above which a reader is warned: `allowed`, the share that the study allows
@@ -30,7 +30,7 @@ constexpr double share_of(std::uint64_t part, std::uint64_t all) {
 /// warned. failed: number of solves that did not converge. solves: number of all solves.
 bool many_not_converged(const StoredResult& result, std::uint64_t failed, std::uint64_t solves);
 
-/// Advice for machines that cannot be assembled, as a clause.
+/// Advice if machines cannot be assembled, as a clause.
 inline constexpr std::string_view kAssemblyAdvice =
     "more iterations do not help: keep a larger clearance to singular poses, or tighten the errors";
 
@@ -38,15 +38,16 @@ inline constexpr std::string_view kAssemblyAdvice =
 bool mostly_impossible(const SolveCounts& solves);
 
 /// The reason why samples were not solved, as words that follow the number of these samples: "did not converge", or
-/// "found no solution, 3 of them because the machine cannot be assembled". The number in the second text is left out if
-/// no unsolved sample has another reason.
+/// "found no solution, 3 of them because the machine cannot be assembled". "3 of them" is left out if this is the
+/// reason for all of them.
 std::string why_unsolved(const SolveCounts& solves);
 
-/// The numbers of unsolved samples by reason: "12 not converged, 3 cannot be assembled". The second part is left out if
-/// it would be 0.
+/// The numbers of unsolved samples by reason: "12 not converged, 3 cannot be assembled". The second number is left out
+/// if it is 0.
 std::string unsolved_in_short(const SolveCounts& solves);
 
-/// The solves of a second fidelity, with the same draws as the solves of the first fidelity.
+/// The solves at the second fidelity of a study that compares two fidelities. They have the same draws as the solves at
+/// the first fidelity.
 struct SecondFidelity {
   std::string first;                ///< name of the first fidelity
   std::string second;               ///< name of the second fidelity
@@ -56,12 +57,12 @@ struct SecondFidelity {
   std::size_t errors = 0;           ///< number of all errors
 };
 
-/// A number of samples as text: "2 000 samples" if series gave the responses of some of them, otherwise "2 000 solves".
-/// by_series: number of samples whose responses a series gave.
+/// A number of samples as text: "2 000 solves", or "2 000 samples" if the responses of some of them were computed from
+/// a series without a solve. by_series: number of the samples without a solve.
 std::string counted_samples(std::uint64_t count, std::uint64_t by_series);
 
-/// Counts of how solves ended, by row and pose. A row is an error, a case or a size; there is only one row if the
-/// result does not distinguish them.
+/// Counts of how solves ended, by row and pose. A row is an error, a case, a size of the errors, or a design of a
+/// sweep. If the result distinguishes none of these, there is only one row.
 struct SolveTally {
   std::string_view row_word;                            ///< the word for a row: "error"; empty if there is only one row
   std::vector<std::string> names;                       ///< names of the rows
@@ -69,8 +70,8 @@ struct SolveTally {
   std::vector<SolveCounts> cells;                       ///< [rows x poses] counts for each row and pose
   std::optional<SecondFidelity> second = std::nullopt;  ///< set if the result compares two fidelities
 
-  SolveCounts total() const;                   ///< The counts of all solves; with two fidelities, those of the first.
-  std::size_t cells_by_series() const;         ///< The number of cells with samples whose responses a series gave.
+  SolveCounts total() const;                   ///< The counts over all rows and poses, at the first fidelity.
+  std::size_t cells_by_series() const;         ///< The number of `cells` with samples from a series.
   std::vector<double> shares() const;          ///< [rows x poses] share_not_converged() of each cell.
   std::vector<double> shares_by_row() const;   ///< [rows] share_not_converged() over all poses.
   std::vector<double> shares_by_pose() const;  ///< [poses] share_not_converged() over all rows.
@@ -81,7 +82,7 @@ inline double share_not_converged(const SolveCounts& solves) {
   return share_of(solves.not_converged(), solves.total());
 }
 
-/// Names the first of two fidelities: " at fidelity \"full\"". Empty if the result does not compare fidelities.
+/// Words that name the first of two fidelities: " at fidelity \"full\"". Empty if the result compares no fidelities.
 std::string at_first_fidelity(const SolveTally& tally);
 
 /// Sentences on the solves that did not converge: their number, why statistics cannot be trusted if their share is

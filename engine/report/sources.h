@@ -2,10 +2,10 @@
 
 #include <string_view>
 
-/// Publications of the methods, as BibTeX entries for papers that use a result.
+/// Publications behind the methods of poesy, as BibTeX entries that a paper with a result can cite.
 namespace poesy {
 
-/// Intervals of yields (stats/proportion.h).
+/// The source of the intervals of yields (stats/proportion.h).
 inline constexpr std::string_view kClopperPearson = R"(@article{clopper1934,
   author = {Clopper, C. J. and Pearson, E. S.},
   title = {The use of confidence or fiducial limits illustrated in the case of the binomial},
@@ -15,7 +15,7 @@ inline constexpr std::string_view kClopperPearson = R"(@article{clopper1934,
 }
 )";
 
-/// Intervals of differences of yields of the same machines (stats/proportion.h).
+/// The source of the intervals of the difference of two yields of the same machines (stats/proportion.h).
 inline constexpr std::string_view kAgrestiMin = R"(@article{agresti2005,
   author = {Agresti, Alan and Min, Yongyi},
   title = {Simple improved confidence intervals for comparing matched proportions},
@@ -25,7 +25,7 @@ inline constexpr std::string_view kAgrestiMin = R"(@article{agresti2005,
 }
 )";
 
-/// Sensitivity indices at a pose and over the workspace (stats/indices.h).
+/// The source of the sensitivity indices at a pose and over the workspace (stats/indices.h).
 inline constexpr std::string_view kDu = R"(@article{du2022,
   author = {Du, Xu and Wang, Bin and Zheng, Junqiang},
   title = {Geometric Error Analysis of a 2{UPR}-{RPU} Over-Constrained Parallel Manipulator},
@@ -35,7 +35,7 @@ inline constexpr std::string_view kDu = R"(@article{du2022,
 }
 )";
 
-/// First-order and total indices from squared differences (stats/squared_differences.h).
+/// The source of first-order and total indices from squared differences (stats/squared_differences.h).
 inline constexpr std::string_view kJansen = R"(@article{jansen1999,
   author = {Jansen, Michiel J. W.},
   title = {Analysis of variance designs for model output},

@@ -29,8 +29,8 @@ inline constexpr double kGlyph = 6.0;  ///< Half the size of a joint's glyph, pi
 
 /// The glyph of a joint by its type. R (revolute): circle; P (prismatic): square; H (helical): diamond; C
 /// (cylindrical): circle in a square; U (universal): circle with a cross; S (spherical): circle in a circle; F (fixed):
-/// dot. The glyph is filled if the joint is actuated. Lines have the CSS colour of the enclosing element. paper: the
-/// colour of areas that are not filled.
+/// dot. The glyph of an actuated joint is filled. Lines have the CSS colour of the enclosing element. paper: the colour
+/// of areas that are not filled.
 std::string svg_glyph(char type, bool actuated, Pixel at, std::string_view paper);
 
 }  // namespace poesy

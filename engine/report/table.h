@@ -52,11 +52,11 @@ struct Table {
   bool ranked = false;                       ///< true if the rows are ranked errors
 };
 
-/// The `width` with which no column is removed, for output that is not a terminal.
+/// The value of `width` with which text_of() removes no column, for output that is not a terminal.
 inline constexpr std::size_t kUnlimitedWidth = std::numeric_limits<std::size_t>::max();
 
-/// The number of characters of a number from its decimal point to its end, or from its exponent if it has no point: 3
-/// in "4.25". 0 for a cell without a number.
+/// The number of characters of a number from its decimal point to its end: 3 in "4.25". If it has no decimal point, the
+/// characters from its exponent to its end count. 0 for a cell without a number.
 std::size_t tail_of(const Cell& cell);
 
 /// Wraps a text between words at `width`, at most at 100 characters. Lines end with '\n'. A longer word has a line of

@@ -42,8 +42,8 @@ std::string rule(const LimitVerdicts& verdicts) {
       percent_text(verdicts.share));
 }
 
-/// The row of errors and the pose at which a limit's value was found, in words; empty if the value is one over all
-/// poses.
+/// The row of errors and the pose at which the value of a limit was found, in words; empty if the value is taken over
+/// all poses together.
 std::string place(const StoredResult& result, const LimitVerdict& verdict) {
   if (!verdict.pose) return {};
   const bool named = verdict.row && !result.row_names.empty();
@@ -166,7 +166,7 @@ Cell needed_cell(const ConvergenceResult& found, std::size_t at) {
   return count_cell(static_cast<std::uint64_t>(std::ceil(needed / digit) * digit));
 }
 
-/// A note on machines that are rejected only because a pose was not solved.
+/// A note on the machines that are rejected only because they were not solved at some pose.
 std::string unsolved_note(const YieldVerdict& yield) {
   const bool one = yield.unsolved == 1;
   const std::string rejects = count_text(yield.unsolved) + " of the rejects ";
@@ -254,7 +254,7 @@ std::optional<Table> features_table(const StoredResult& result, const TableOptio
 std::vector<Table> result_tables(const ReportKind& kind, const StoredResult& result, const TableOptions& options) {
   std::vector<Table> tables = kind.tables(result, options);
   auto limits = limits_table(result);
-  // A kind that shows more of the yield has its own table of this name.
+  // A kind that shows more about the yield makes a table of this name itself.
   if (limits && std::ranges::find(tables, limits->name, &Table::name) == tables.end()) {
     tables.insert(tables.begin(), *std::move(limits));
   }

@@ -19,24 +19,24 @@ namespace poesy {
 /// result ended.
 std::string summary_text(const StoredResult& result, const SolveTally& tally, std::size_t width);
 
-/// Returns true if a response varies, or if the result does not say whether it varies.
+/// Returns true if a response varies, or if the result does not tell whether it varies. response: index in the result.
 bool varies(const StoredResult& result, std::size_t response);
 
 /// A sentence without a full stop. It says that this response does not vary, and what follows from that.
 std::string constant_text(const NamedUnit& response);
 
-/// The given responses in the same order, except that those that do not vary come last.
+/// The given indices of responses in the same order, except that those of responses that do not vary come last.
 std::vector<std::size_t> varying_first(const StoredResult& result, std::vector<std::size_t> responses);
 
 /// The response by which errors are ranked by default. The candidates are the headline's responses that vary, or all of
-/// the headline's responses if none varies. If the first candidate has a limit, or is the displacement of the tool or
-/// the platform, it is the result. Otherwise the result is the first candidate that is a length, or the first candidate
-/// if none is a length. Empty if the headline is empty.
+/// the headline's responses if none varies. The first candidate is taken if it has a limit, or is the displacement of
+/// the tool or the platform. Otherwise the first candidate that is a length is taken, or the first candidate if none is
+/// a length. Empty if the headline is empty.
 std::string default_ranking(const StoredResult& result);
 
 /// The order in which tables show ranked errors.
 enum class RowOrder {
-  effect,        ///< largest index x sigma first: the effect of the error if it has its size in the study
+  effect,        ///< largest effect (index x sigma in the study) first
   index,         ///< largest sensitivity index first, in the unit shown
   name,          ///< names from a to z
   study,         ///< order of the study
@@ -48,7 +48,7 @@ inline constexpr std::array<std::string_view, 5> kRowOrders{"effect", "index", "
 
 /// How tables show a result.
 struct TableOptions {
-  std::string ranked_by = {};         ///< response by which errors are ranked, if the kind ranks errors
+  std::string ranked_by = {};         ///< name of the response by which errors are ranked, if the kind ranks errors
   RowOrder order = RowOrder::effect;  ///< order of ranked errors
 };
 
@@ -59,16 +59,15 @@ void keep_first(std::size_t most, std::span<Table> tables);
 struct Settling {
   std::string_view quantities;         ///< name of the quantities: "global indices"
   std::vector<std::string> slots;      ///< names of errors that vary alone, or "all errors" if all vary together
-  std::vector<std::size_t> responses;  ///< responses whose quantities decide when adaptive samples end
+  std::vector<std::size_t> responses;  ///< indices of the responses whose quantities decide when adaptive samples end
 };
 
-/// A table of how adaptive samples converged: how many quantities reached the width of interval that the study asks
-/// for, the samples that were needed, and the quantities that did not reach it. None if the number of samples was
-/// fixed.
+/// A table of how adaptive samples converged: how many quantities have intervals as narrow as the study asks for, the
+/// samples that were needed, and the quantities with wider intervals. None if the number of samples was fixed.
 std::optional<Table> convergence_table(const StoredResult& result, const Settling& settling);
 
-/// A sentence with the number of quantities whose intervals are wider than the study asks for. Empty if there are none,
-/// or if the number of samples was fixed.
+/// A sentence with the number of quantities whose intervals are wider than the study asks for. Empty if there is no
+/// such quantity, or if the number of samples was fixed.
 std::string not_settled_text(const StoredResult& result, const Settling& settling);
 
 /// The verdict on the limit of a response; null if the study does not limit it.
@@ -86,12 +85,13 @@ std::optional<Table> measured_table(const StoredResult& result);
 /// there are no such errors.
 std::optional<Table> stated_table(const StoredResult& result);
 
-/// Sentences on the largest yield that so few measured parts can prove; the error with the fewest parts decides. asked:
-/// the yield that the study asks for. Precondition: some errors are drawn from measured parts.
+/// A text on the largest yield that the measured parts can prove; the error with the fewest parts decides. conf_level:
+/// confidence with which the yield is proved. asked: the yield that the study asks for; 0: none. Precondition: some
+/// errors are drawn from measured parts.
 std::string few_parts_text(const StoredResult& result, double conf_level, double asked);
 
-/// The statistic of the draws that is judged (Judge), as text behind PASS or FAIL: " by root mean square". Empty for an
-/// evaluation, which judges each row. Precondition: limits are not judged by the yield.
+/// The statistic of the draws that is judged (Judge), as words that follow PASS or FAIL: " by root mean square". Empty
+/// for an evaluation, which judges each row. Precondition: limits are not judged by the yield.
 std::string judged_text(const LimitVerdicts& verdicts);
 
 /// A clause on the draws that are not within the limit: "; 9.4 % of the samples are not within it". Empty for an
@@ -110,10 +110,10 @@ struct RankedResult {
   SolveCounts solves;          ///< how all solves ended
 };
 
-/// Two rankings of the same errors by their effects if the errors have the sizes of each study.
+/// Two rankings of the same errors by their effects. In each, the errors have the sizes of the study of that result.
 struct TwoRankings {
-  Table table;  ///< rank and effect of each error in the results A and B, ordered by the results of A
-  double tau;   ///< Kendall's tau of the effects; NaN if not known
+  Table table;                       ///< rank and effect of each error in the results A and B, in the order of A
+  double tau;                        ///< Kendall's tau of the effects; NaN if not known
   std::vector<std::string> remarks;  ///< sentences on tau, on different metrics, and on what is left out
 };
 
@@ -132,7 +132,8 @@ std::string ranked_text(char letter, const RankedResult& ranked, std::string_vie
 ///
 /// - kind, model, title, poesy_version, git_commit, content_sha256
 /// - metric: name, null if nothing is weighed; metric_points: [[x, y, z]] in m, null if the metric has none
-/// - seed, if the study has one; poses
+/// - seed, null if the study has none; poses: their number
+/// - candidate_poses: number, null if not known; rejected_poses: [{reason, count}]
 /// - errors, responses: [{name, unit (SI), description}]
 /// - solves: total, not_converged, by_status: {converged, stagnated, ...}
 /// - run: created, threads, wall_seconds
@@ -153,9 +154,9 @@ struct ComparedResults {
 
 /// A comparison as one JSON object:
 ///
-///     results: [{path, response (by which errors rank), and json_of() of the result without its tables}, ...]
+///     results: [{path, response (by which errors are ranked), and the summary that json_of() of a result has}, ...]
 ///     kendall_tau (null if not known, or if nothing is ranked), remarks: [sentences]
-///     tables: as json_of() gives them
+///     tables: as in json_of() of a result
 ///
 /// The results are in order, with A first.
 std::string json_of(std::span<const RankedResult> results, const ComparedResults& compared);

@@ -22,10 +22,10 @@ CheckpointIdentity identity_of(const Study& study, const PoseSet& poses, const s
   Study rest = study;
   rest.seed = 0;
   rest.title.clear();
-  rest.max_not_converged = 1.0;  // does not matter here, because it is checked only at the end of a run
-  // A run may continue with other limits if these are applied only at its end. That is so for limits on magnitudes if
-  // errors are drawn per pose. But if machines are drawn, they are judged during the run. And for a limit on signed
-  // values, the run keeps draws near the ends of the limit.
+  rest.max_not_converged = 1.0;  // may differ, because it is checked only at the end of a run
+  // Limits that are applied only at the end of a run may differ: limits on magnitudes, if errors are drawn per pose.
+  // All other limits are needed during the run, to judge machines, or to keep the draws near the ends of a limit on
+  // signed values.
   if (study.analysis.draws == Draws::per_pose) {
     std::erase_if(rest.analysis.limits, [](const ResponseLimit& limit) { return limit.allowed.is_magnitude(); });
   }

@@ -9,9 +9,10 @@
 
 namespace poesy {
 
-/// The identity of a run of the whole study, or of one shard, by this program. It leaves out what a later run may
-/// change in the study: title, seed, max_not_converged, samples (except for a kind that decides by them) and, if errors
-/// are drawn per pose, limits on magnitudes.
+/// The identity of a run of the whole study, or of one shard, by this program. Its text of the study leaves out title
+/// and max_not_converged, which a later run may change, and, if errors are drawn per pose, limits on magnitudes. It
+/// also leaves out the seed and the samples, which are separate members (samples stay in it for a kind that decides by
+/// them).
 CheckpointIdentity identity_of(const Study& study, const PoseSet& poses,
                                const std::optional<Shard>& shard = std::nullopt);
 

@@ -24,7 +24,7 @@ std::string cell(const Number& number) {
   return std::visit([](auto value) { return cell(value); }, number);
 }
 
-/// The different units of these things, in their order, joined by "or".
+/// The units of these things, each unit once, in the order of the things, joined by "or".
 template <class UnitName>
 std::string units_of(const std::vector<NamedUnit>& things, const UnitName& unit_name) {
   std::vector<std::string> seen;

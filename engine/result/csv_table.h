@@ -12,10 +12,10 @@
 #include "engine/result/fields.h"
 #include "engine/result/result_file.h"
 
-/// CSV files as plain values, which refer to the result that they show.
+/// CSV tables of a result. A table refers to the result, which must outlive it.
 namespace poesy {
 
-/// A column of texts of a CSV file. csv_cell() writes each text.
+/// A column of texts of a CSV file. Each text is written as csv_cell().
 struct CsvText {
   std::string heading;                                ///< heading of the column
   std::function<std::string(std::size_t line)> text;  ///< text in this line; lines count from 0
@@ -32,7 +32,7 @@ struct CsvColumn {
 struct CsvPoseColumns {
   std::size_t poses = 0;   ///< number of columns
   std::string unit = "1";  ///< unit of the numbers, for the headings; see with_unit()
-  /// The value in this line at this pose: in `unit`. Lines and poses count from 0.
+  /// The value in this line at this pose, in `unit`. Lines and poses count from 0.
   std::function<Number(std::size_t line, std::size_t pose)> number;
 };
 
@@ -44,19 +44,19 @@ struct CsvTable {
   /// Columns of numbers; NaN is written as "NaN", a whole number with all its digits.
   std::vector<CsvColumn> columns = {};
   CsvText last = {};  ///< column of texts after the numbers; none if its heading is empty
-  /// Returns true for each line that is written. If it is empty, all lines are written.
+  /// Returns true if the line is written. An empty function: all lines are written.
   std::function<bool(std::size_t line)> has = {};
   std::vector<CsvText> more = {};  ///< columns of texts between `first` and the numbers
   std::vector<CsvText> rest = {};  ///< columns of texts after `last`
   CsvPoseColumns at_poses = {};    ///< columns of numbers after those of `columns`
 };
 
-/// CSV files, in the order in which they are listed.
+/// The CSV tables of a result, in the order in which `poesy export` lists them.
 using CsvTables = std::vector<CsvTable>;
 
 /// A text as a cell of a CSV file (RFC 4180). A text with a comma, a semicolon or a quote is put in quotes, and its
 /// quotes are doubled. Control characters, including line ends, become "?". A text that begins with = + - or @ and is
-/// not a number gets an apostrophe in front, because spreadsheets take it for a formula even in quotes.
+/// not a number gets an apostrophe in front, because spreadsheets would read it as a formula, even in quotes.
 std::string csv_cell(std::string_view text);
 
 /// A heading "name [unit]", or the name alone for a number without unit.
@@ -67,11 +67,11 @@ std::string write_csv(const std::string& folder, const CsvTable& table);
 
 /// The SI units of things, joined by "or" if they differ: "m", or "m or rad".
 std::string si_units(const std::vector<NamedUnit>& things);
-/// The units in which results show these things: "mm or deg".
+/// The units in which reports show these things, joined by "or": "mm or deg".
 std::string display_units(const std::vector<NamedUnit>& things);
 
-/// The unit of numbers in a CSV file. unit: unit of the numbers' dataset, as fields.h states it. response: the response
-/// to which the numbers belong; null if they belong to none.
+/// The unit in a CSV heading for the numbers of a dataset. unit: unit of the dataset, which may be one of the texts in
+/// fields.h, such as kResponseUnit. response: the response to which the numbers belong; null if they belong to none.
 std::string csv_unit(const std::string& unit, const StoredResult& result, const NamedUnit* response = nullptr);
 
 /// A table with a line for each error of the result, and no columns of numbers yet.
@@ -79,29 +79,30 @@ CsvTable lines_of_factors(const StoredResult& result, std::string name);
 /// A table with a line for each pose, and no columns of numbers yet.
 CsvTable lines_of_poses(const StoredResult& result, std::string name);
 
-/// A column of the elements of a list, or of get(element) if `get` is given. Keeps a reference to the list.
+/// A column with get(element) for each element of a list; by default the elements themselves. Keeps a reference to the
+/// list.
 template <class List, class Get = std::identity>
 CsvColumn list_column(std::string heading, const List& list, Get get = {}) {
   return {std::move(heading),
           [elements = std::span(list), get](std::size_t line) { return to_number(std::invoke(get, elements[line])); }};
 }
 
-/// A column of the elements of a field. first: index of the element in the first line.
+/// A column of consecutive elements of a field, row-major. first: index of the element in the first line.
 template <class Found>
 CsvColumn field_column(std::string heading, const FieldRow<Found>& field, const Found& found, std::size_t first = 0) {
   return {std::move(heading),
           [&field, &found, first](std::size_t line) { return number_at(field, found, first + line); }};
 }
 
-/// A column of one row of a field with several axes. at: index of the row on the field's first axis.
+/// A column of the elements of a field at one index on its first axis. at: that index.
 template <class Found>
 CsvColumn field_row_column(std::string heading, const FieldRow<Found>& field, const Found& found, std::size_t at) {
   return {std::move(heading),
           [&field, &found, at](std::size_t line) { return field.member->number_in_row(found, at, line); }};
 }
 
-/// Columns for the poses, from an array whose last two axes are the lines and the poses. at: indices on the axes before
-/// these two.
+/// Columns for the poses, from an array whose last two axes are those of the lines and of the poses. at: indices on the
+/// other axes, which come before.
 template <class T, NamedAxis... Axes, std::integral... Positions>
 CsvPoseColumns pose_columns(const Array<T, Axes...>& array, std::string unit, Positions... at) {
   return {array.template length<axis::Pose>(), std::move(unit),

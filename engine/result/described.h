@@ -17,9 +17,10 @@ std::vector<NamedUnit> named_coordinates(const ModelDescription& model);
 /// The chosen indices; if none are chosen, all indices from 0 to count - 1.
 std::vector<std::size_t> chosen_or_all(std::vector<std::size_t> chosen, std::size_t count);
 
-/// The part of a result that is known before there are numbers: kind, title, mechanism, metric, coordinates, poses,
-/// responses and measured errors. All other members are empty. The headline (the responses of a summary) is in the
-/// order of the model; read_result() orders it by limits. model: the built mechanism of the study.
+/// The part of a result that follows from the study alone, before anything is solved: kind, title, mechanism, metric,
+/// coordinates, poses, responses and measured errors. All other members are empty. The headline (the responses of a
+/// summary) is in the order of the model; read_result() moves responses with limits to the front. model: the built
+/// mechanism of the study.
 StoredResult described(const Study& study, const Model& model, const SelectedPoses& poses);
 
 }  // namespace poesy

@@ -32,8 +32,8 @@ inline const Axes kByFactor{"factor"};
 inline const Axes kByPose{"pose"};
 /// @}
 
-/// Texts for the units of datasets: for numbers with the unit of a response, of an error, of a response divided by an
-/// error, and of a length divided by an error.
+/// Units of datasets whose numbers have different units: that of the response, of the error (factor), of the response
+/// divided by the error, and m divided by the unit of the error.
 /// @{
 inline constexpr const char* kResponseUnit = "SI: response unit, see /responses/unit";
 inline constexpr const char* kFactorUnit = "SI: factor unit, see /factors/unit";
@@ -43,7 +43,7 @@ inline constexpr const char* kLengthPerFactorUnit = "SI: m / factor unit";
 
 /// The attributes that describe a dataset to people.
 struct Label {
-  std::string unit;         ///< unit: "m", "rad,rad,rad,m,m,m" where components differ, or "1"
+  std::string unit;         ///< unit: "m"; "rad,rad,rad,m,m,m" if components have different units; "1" if there is none
   std::string description;  ///< meaning, as a sentence
 };
 
@@ -52,7 +52,7 @@ class ResultBuilder {
  public:
   explicit ResultBuilder(h5::File file) : file_(std::move(file)) {}  ///< file: an empty file.
 
-  h5::File& file() { return file_; }  ///< The file, for groups and attributes.
+  h5::File& file() { return file_; }  ///< The file itself, for making groups and attributes.
 
   /// Adds an axis: the dimension scale /name, with a value for each index along the axis.
   template <h5::Element T>
@@ -93,8 +93,8 @@ class ResultBuilder {
   void add(const std::string& path, const Array<T, A...>& array, const Label& label) {
     add(path, array.axis_names(), array.all(), label);
   }
-  /// Adds a dataset along the axes of a layout, of numbers that are computed while they are written. element(): takes
-  /// an index for each axis, and returns the number there.
+  /// Adds a dataset along the axes of a layout. Its numbers are computed while they are written: element(i, j, ...)
+  /// returns the number at these indices, one for each axis.
   template <h5::Number T, class... A, class ElementAt>
   void add_computed(const std::string& path, const AxisLayout<A...>& layout, const ElementAt& element,
                     const Label& label) {
@@ -107,7 +107,8 @@ class ResultBuilder {
   void add_scalar(const std::string& path, const T& value, const Label& label) {
     write(path, {}, std::span<const T>(&value, 1), label);
   }
-  /// Links these axes into a group under their own names, because xarray opens one group at a time.
+  /// Links these axes into a group under the same names, because xarray reads one group at a time and needs the axes
+  /// there.
   void show_axes(const std::string& group, const Axes& axes) {
     for (const std::string& axis : axes) {
       const std::string shown = group + "/" + axis;
@@ -173,10 +174,10 @@ AnArray read_array(const h5::File& file, const std::string& path, const Axes& ax
   return {lengths_in<AnArray>(file, axes), read_along<typename AnArray::Element>(file, path, axes)};
 }
 
-/// Whether all result files of a kind of study have a dataset.
+/// Whether every result file of a kind of study has a certain dataset.
 enum class Presence {
   always,          ///< every file has it
-  where_computed,  ///< an empty array is not written, because the study did not compute it
+  where_computed,  ///< the dataset is missing if its array is empty, because the study did not compute it
 };
 
 /// The lengths of axes by their names.
@@ -193,7 +194,7 @@ inline constexpr bool kIsArray = false;
 template <class T, class... A>
 inline constexpr bool kIsArray<Array<T, A...>> = true;
 
-/// The names of the axes of a member of a result, which follow from the type of the member.
+/// The names of the axes of a member: those of its type if that is an Array, none for a single value.
 template <class Value>
 Axes axes_of() {
   static_assert(!kIsList<Value>, "the type of a list does not say its axes");
@@ -245,12 +246,12 @@ Number number(const Value& value) {
 /// Where a dataset is in a file, and the attributes that describe it.
 struct Place {
   const std::string& path;  ///< absolute path of the dataset
-  const Axes& axes;         ///< names of its axes, which are at the root of the file
+  const Axes& axes;         ///< names of the axes of the dataset; the axes are at the root of the file
   const Label& label;       ///< unit and description of the dataset
   Presence presence;        ///< whether a file may lack the dataset
 };
 
-/// Reads and writes one member of objects of type `Found`, whatever the type of the member.
+/// The interface for reading and writing one member of objects of type `Found`. It hides the type of the member.
 template <class Found>
 class Member {
  public:
@@ -260,14 +261,14 @@ class Member {
   virtual bool write(ResultBuilder& result, const Place& place, std::span<const Found> things) const = 0;
   /// Reads the member of each thing. Throws h5::Error if the dataset is missing or has another shape.
   virtual void read(const h5::File& file, const std::string& path, const Axes& axes, std::span<Found> things) const = 0;
-  virtual void clear(Found& found) const = 0;                           ///< Frees the memory of the member's elements.
+  virtual void clear(Found& found) const = 0;                           ///< Empties the member if it is a list.
   virtual Number number(const Found& found, std::size_t at) const = 0;  ///< The element at this index, row-major.
   /// The element at index `within` of one row of the member's elements. row: index of the row on the first axis.
   virtual Number number_in_row(const Found& found, std::size_t row, std::size_t within) const = 0;
   virtual std::size_t element_bytes() const = 0;  ///< Size of one element in bytes, in memory and in a file alike.
 };
 
-/// Reads and writes a member of the type `Value`.
+/// Reads and writes a member of type `Value`: an Array, a std::vector, or a single value.
 template <class Found, class Value>
 class MemberOf final : public Member<Found> {
  public:
@@ -288,7 +289,7 @@ class MemberOf final : public Member<Found> {
   }
   void read(const h5::File& file, const std::string& path, const Axes& axes, std::span<Found> things) const override {
     if constexpr (kIsArray<Value>) {
-      // The description of a dataset may name the axes differently from the type.
+      // The names of the axes come from the description of the dataset, because they may differ from those in the type.
       things.front().*member_ = read_array<Value>(file, path, axes);
     } else if constexpr (kIsList<Value>) {
       things.front().*member_ = read_along<typename Value::value_type>(file, path, axes);
@@ -331,11 +332,11 @@ class MemberOf final : public Member<Found> {
 
 }  // namespace detail
 
-/// A number of a result that is stored as an attribute of a group or a dataset.
+/// A number of a result that a file has as an attribute of a group or a dataset.
 template <class Found>
 struct Attribute {
   std::string name;       ///< name of the attribute in the file
-  double Found::*member;  ///< member with the number
+  double Found::*member;  ///< pointer to the member with the number
 };
 
 /// Describes a dataset in a group of a result file by the member of `Found` that has its numbers. If the member is an
@@ -350,7 +351,7 @@ struct FieldRow {
       : FieldRow(std::move(dataset), elements, detail::axes_of<Value>(), std::move(in), std::move(meaning), when) {
     attributes = std::move(beside);
   }
-  /// Describes a dataset along these axes. It is for members whose type does not determine the axes.
+  /// Describes a dataset along these axes, for a member whose type does not determine its axes.
   template <class Value>
   FieldRow(std::string dataset, Value Found::*elements, Axes along, std::string in, std::string meaning,
            Presence when = Presence::always)
@@ -369,12 +370,12 @@ struct FieldRow {
   }
 
   std::string name;                                     ///< name of the dataset in its group
-  std::shared_ptr<const detail::Member<Found>> member;  ///< access to the member
+  std::shared_ptr<const detail::Member<Found>> member;  ///< reads and writes the member with the elements
   Axes axes;                ///< names of the axes, which are at the root of the file; none for a scalar
-  std::string unit;         ///< unit: "m", "1", or one of the constants above
+  std::string unit;         ///< unit: "m", "1", or one of the texts above, such as kResponseUnit
   std::string description;  ///< meaning, as a sentence
-  std::vector<Attribute<Found>> attributes;  ///< attributes, which are written but not read
-  Presence presence = Presence::always;      ///< whether every file has the dataset
+  std::vector<Attribute<Found>> attributes;  ///< attributes of the dataset, which are written but not read
+  Presence presence = Presence::always;      ///< whether every file has the dataset, or only some
 };
 
 /// The descriptions of the datasets of a group, in the order in which they are written.
@@ -387,7 +388,7 @@ struct Group {
   std::string path;                                                        ///< path of the group: "/sensitivity"
   std::string description;                                                 ///< meaning, as a sentence
   std::vector<Attribute<Found>> attributes = {};                           ///< numbers that are attributes of the group
-  std::vector<std::pair<std::string, std::size_t Found::*>> lengths = {};  ///< axes whose lengths are stored in members
+  std::vector<std::pair<std::string, std::size_t Found::*>> lengths = {};  ///< axes whose lengths are read into members
   Fields<Found> fields;                                                    ///< datasets of the group
 };
 
@@ -448,8 +449,8 @@ void write_group(ResultBuilder& result, const Group<Found>& group, Found&& found
   write_group(result, group, std::as_const(found), [&](const FieldRow<Found>& field) { field.member->clear(found); });
 }
 
-/// Reads the members with these datasets for several objects; the datasets have one element for each of them. Throws
-/// h5::Error if a dataset is missing or has another shape.
+/// Reads the members that these fields describe, for several objects; each dataset has one element for each object.
+/// Throws h5::Error if a dataset is missing or has another shape.
 template <class Found>
 void read_fields(const h5::File& file, const std::string& group, const Fields<Found>& fields, std::span<Found> things) {
   for (const FieldRow<Found>& field : fields) {
@@ -459,7 +460,7 @@ void read_fields(const h5::File& file, const std::string& group, const Fields<Fo
   }
 }
 
-/// Reads the members with these datasets for a single object.
+/// Reads the members that these fields describe, for a single object.
 template <class Found>
 void read_fields(const h5::File& file, const std::string& group, const Fields<Found>& fields, Found& found) {
   read_fields(file, group, fields, std::span(&found, 1));
@@ -486,8 +487,8 @@ void read_group(const h5::File& file, const Group<Found>& group, Found& found) {
   read_fields(file, group.path, group.fields, found);
 }
 
-/// The number of bytes of all elements of these datasets, in memory and in a file alike. lengths: the lengths of all
-/// axes of these datasets.
+/// The size of all elements of these datasets in bytes, in memory and in a file alike. lengths: the lengths of all
+/// their axes.
 template <class Found>
 std::size_t bytes_of(const Fields<Found>& fields, const AxisLengths& lengths) {
   std::size_t bytes = 0;
@@ -499,7 +500,8 @@ std::size_t bytes_of(const Fields<Found>& fields, const AxisLengths& lengths) {
   return bytes;
 }
 
-/// The element of a dataset at this index, as the file stores it. Precondition: the element exists and is a number.
+/// The element of a dataset at this row-major index, as the file stores it. Precondition: the element exists and is a
+/// number.
 template <class Found>
 Number number_at(const FieldRow<Found>& field, const Found& found, std::size_t at) {
   return field.member->number(found, at);

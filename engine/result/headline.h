@@ -4,10 +4,10 @@
 
 namespace poesy {
 
-/// Orders the headline, the responses that a summary shows, and adds the responses with limits that are not in it.
-/// Responses with limits come first, the ones most often missed before the others. They are followed by the
-/// displacement of the tool, the displacement of the platform, and the remaining responses. Apart from this, the order
-/// stays. Precondition: the limits have been read.
+/// Orders StoredResult::headline (the responses that a summary shows), and adds to it the responses with limits that it
+/// lacks. Responses with limits come first, those whose limit is missed most often before the others. They are followed
+/// by the displacement of the tool, the displacement of the platform, and the remaining responses. Otherwise the order
+/// stays as it was. Precondition: StoredResult::verdicts is set, if the study has limits.
 void order_headline(StoredResult& result);
 
 }  // namespace poesy

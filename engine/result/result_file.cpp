@@ -31,7 +31,7 @@ const Fields<RejectedPoses> kRejectedFields{
     {"reason", &RejectedPoses::reason, {"rejection"}, "1", "Why poses were rejected"},
     {"count", &RejectedPoses::count, {"rejection"}, "1", "Candidate poses rejected for this reason"}};
 
-const std::string kCandidates = "candidates";  ///< attribute: poses that were examined, rejected or not
+const std::string kCandidates = "candidates";  ///< attribute: number of examined poses, rejected or not
 
 const Axes kScalar{};
 
@@ -45,8 +45,8 @@ const Fields<RunFacts> kFactFields{
     {"checkpoint_seconds", &RunFacts::checkpoint_seconds, kScalar, "s", "Of that time, spent on checkpoints"},
     {"solves", &RunFacts::solves, kScalar, "1", "Samples that were solved, not computed from certified series"}};
 
-/// Describes the datasets of a list of things: their names, units and descriptions. what: the word for a thing in these
-/// descriptions, such as "error" for the axis "factor".
+/// The fields with the names, units and descriptions of things along an axis. what: the word for such a thing in the
+/// descriptions of the datasets, such as "error" for the axis "factor".
 Fields<NamedUnit> name_fields(const std::string& axis, const std::string& what) {
   return {{"name", &NamedUnit::name, {axis}, "1", "Name of the " + what},
           {"unit", &NamedUnit::unit, {axis}, "1", "SI unit of the " + what},
@@ -207,7 +207,7 @@ void compose_all(ResultBuilder& result, std::string_view filetype, std::string_v
   result.file().set_attribute("/", "content_sha256", content_sha256(result.file()));
 }
 
-/// A function that writes the parts which a result of this kind has in addition to the header.
+/// Returns a function that writes the parts that a result of this kind has in addition to the header.
 std::function<void(ResultBuilder&)> parts_of(const FileKind& kind, const Study& study, std::any& found,
                                              const DrawingResult* drawing) {
   return [&kind, &study, &found, drawing](ResultBuilder& result) {
@@ -223,8 +223,8 @@ void read_parts(const h5::File& file, const FileKind& kind, StoredResult& result
   order_headline(result);
 }
 
-/// Returns true if a new result may replace a file: an older result or shard, even a damaged one, or an empty file. The
-/// type of a result or shard is in its first kilobyte.
+/// Returns true if a new result may replace the file at this path: the file is an older result or shard, even a damaged
+/// one, or is empty. The attribute `filetype`, by which it is recognised, is in the first 64 KiB.
 bool may_be_replaced(const std::string& path) { return is_marked(path, kResultFile) || has_mark(path, kShardFile); }
 
 }  // namespace

@@ -9,12 +9,12 @@
 namespace poesy {
 namespace {
 
-/// How the solves of the cells ended, as columns of the group /solver.
+/// How solves ended, as columns of the group /solver. A cell is a varied error at a pose, or all errors at a pose.
 struct SolverColumns {
-  std::vector<std::uint64_t> not_converged;   ///< [cells] samples without a solution
-  std::vector<double> iterations_mean;        ///< [cells] mean number of iterations
-  std::vector<std::uint32_t> iterations_max;  ///< [cells] largest number of iterations
-  std::vector<std::uint64_t> by_status;       ///< [statuses x cells] samples that ended with each status
+  std::vector<std::uint64_t> not_converged;   ///< [cells] number of samples whose solves did not converge
+  std::vector<double> iterations_mean;        ///< [cells] mean number of iterations of a sample
+  std::vector<std::uint32_t> iterations_max;  ///< [cells] largest number of iterations of a sample
+  std::vector<std::uint64_t> by_status;       ///< [statuses x cells] number of samples with each status
 };
 
 double mean_iterations(const SolveCounts& cell) {
@@ -30,7 +30,7 @@ Fields<SolverColumns> solver_fields(const Axes& cells) {
           {"solves_by_status", &SolverColumns::by_status, by_status, "1", "Samples that ended so"}};
 }
 
-/// A failed sample in the list of failures, as a file stores it.
+/// A failed sample, in the form in which a result file lists it.
 struct FailureRow {
   std::string factor;
   std::uint64_t pose;
@@ -48,7 +48,7 @@ const Fields<FailureRow> kFailureFields{
     {"failed_status", &FailureRow::status, kByFailure, "1",
      "How these solves ended: a position in status_names, from 0"}};
 
-constexpr std::string_view kByRow = "row";  ///< word of the attribute `judge` in a result of an evaluation
+constexpr std::string_view kByRow = "row";  ///< value of the attribute `judge` if each row of an error table is judged
 
 const Axes kLimited{"limited_response"};
 
@@ -80,7 +80,7 @@ const Fields<LimitRow> kLimitFields{
     {"pose", &LimitRow::pose, kLimited, "1", "Pose of the value, from 0; -1 where it is of all poses"},
     {"row", &LimitRow::row, kLimited, "1", "Row of errors, or case, of the value, from 0; -1 where there are none"}};
 
-/// Additional datasets of /limits, for files with a limit that is not on the magnitude at each pose.
+/// Further datasets of /limits. They are written if any limit of the study is not on the magnitude at each pose.
 const Fields<LimitRow> kEndFields{
     {"from", &LimitRow::from, kLimited, kResponseUnit,
      "Lower end of the limit, of which /limits/limit is then the upper end: minus infinity or infinity for none, and "
@@ -106,7 +106,8 @@ bool has_ends(const LimitVerdicts& verdicts) {
   return !std::ranges::all_of(verdicts.limits, [](const LimitVerdict& one) { return one.limit.is_plain(); });
 }
 
-/// The verdict in a row of the file. Its limit is taken as a limit on magnitudes.
+/// The verdict in a row of the file, with its limit as a limit on magnitudes; read_limits() replaces other limits by
+/// limit_of().
 LimitVerdict verdict_of(const LimitRow& row) {
   return {.limit = row.limit,
           .value = row.value,
@@ -117,7 +118,8 @@ LimitVerdict verdict_of(const LimitRow& row) {
           .row = row.row};
 }
 
-/// The limit in a row of the file, given by its two ends. Throws h5::Error if no limit can have these numbers.
+/// The limit in a row of the file that states both ends (kEndFields). Throws h5::Error if no limit can have these
+/// numbers.
 ValueLimit limit_of(const LimitRow& row) {
   const bool is_possible = row.from < row.limit && row.pose_share > 0.0 && row.pose_share <= 1.0 &&
                            !(row.spread && (row.pose_share < 1.0 || row.from != -row.limit));
@@ -138,7 +140,7 @@ constexpr std::string_view kLimitsMeaning =
 /// The datasets of /convergence that describe how the course of estimates ended, with a number for each quantity or for
 /// each varied error (slot). They are written after the datasets of the course itself.
 Fields<ConvergenceResult> end_fields(const CourseWords& words) {
-  // The axes of the quantities, followed by the axis of the numbers of samples.
+  // all: the axes of the quantities, followed by the axis of the numbers of samples.
   const Axes& all = words.group.fields.front().axes;
   const Axes quantities(all.begin(), all.end() - 1);
   const Axes slots(all.begin() + 1, all.end() - 1);
@@ -186,7 +188,7 @@ const Group<MeasuredErrors> kMeasuredErrors{
      {"correlation", &MeasuredErrors::correlation, kMeasured, "1",
       "With that one, of their normal scores; 0 for none"}}};
 
-/// Adds, for this error, the error with which it is correlated most, and their correlation.
+/// Adds to `found` the name of the error with which this error is correlated most, and their correlation.
 void append_correlation(const Study& study, FactorIndex factor, MeasuredErrors& found) {
   std::string name(kUncorrelated);
   double largest = 0.0;
@@ -212,7 +214,7 @@ double sample_deviation(std::span<const double> values, double mean) {
   return std::sqrt(sum / static_cast<double>(values.size() - 1));
 }
 
-/// The table measured_errors.csv. The last cell of a line is the unit of the error.
+/// The table measured_errors.csv, with a line for each error. Its last column is the unit of the error.
 CsvTable measured_table(const StoredResult& result) {
   const MeasuredErrors& found = result.measured;
   CsvTable table{"measured_errors",
@@ -261,8 +263,8 @@ std::vector<double> stated_means(const Study& study) {
 
 namespace {
 
-/// Adds to the result file the means that the study states, and which errors its machines draw per pose. If the study
-/// states no such means or errors, their dataset is not written.
+/// Adds to the result file the means that the study states, unless all are 0. Also adds which errors machines draw anew
+/// at each pose, if there are such errors.
 void add_stated(ResultBuilder& result, const Study& study) {
   if (const std::vector<double> mean = stated_means(study); !mean.empty()) {
     result.add("/factors/mean", {"factor"}, mean, {kFactorUnit, "Mean of the error, as set in the study"});
@@ -379,8 +381,8 @@ std::vector<SolveCounts> read_solver(const h5::File& file, const Axes& axes) {
     for (std::size_t status = 0; status < statuses; ++status) {
       counts.by_status[status] = by_status(status, cell);
     }
-    // The sum of iterations is not stored. It is the stored mean times the total number of samples, rounded to a whole
-    // number, which is exact. The mean is NaN without samples.
+    // The sum of iterations is not stored. The stored mean times the number of samples, rounded to a whole number,
+    // gives it exactly. Without samples the mean is NaN.
     const auto total = static_cast<double>(counts.total());
     const double sum = columns.iterations_mean[cell] * total;
     if (total > 0.0) counts.iterations = static_cast<std::uint64_t>(std::llround(sum));

@@ -13,8 +13,7 @@
 #include "engine/result/result_file.h"
 #include "engine/run/evaluation.h"
 
-/// Functions for the data that all or several kinds of result files have. They write these data, read them, and show
-/// them as CSV.
+/// Functions that write, read and export as CSV those data that several kinds of result files have.
 namespace poesy {
 
 /// The numbers 0 to count - 1, as values of an axis that has no names.
@@ -24,7 +23,7 @@ inline std::vector<std::int64_t> axis_numbers(std::size_t count) {
   return list;
 }
 
-/// For each thing, the text that `member` selects, such as its name.
+/// The texts that `member` selects, such as the names, one for each thing.
 template <class Things, class Member>
 std::vector<std::string> texts(const Things& things, const Member& member) {
   std::vector<std::string> list;
@@ -42,14 +41,14 @@ std::size_t position_in(const Things& things, const std::string& name, const std
   return static_cast<std::size_t>(found - things.begin());
 }
 
-/// The SI unit of a thing that has a dimension.
+/// The SI unit of a thing with a member `dimension`: "m", "rad", ...
 template <class Thing>
 std::string unit_of(const Thing& thing) {
   return std::string(si_unit(thing.dimension));
 }
 
-/// Throws h5::Error for a name that cannot be part of a file name or a cell of a table. path: path of the dataset with
-/// the names.
+/// Throws h5::Error for a name that is empty or has a slash, a comma or a control character, so that it cannot be part
+/// of a file name or of a cell of a table. path: path of the dataset with the names, for the message.
 void check_names(std::span<const std::string> names, const std::string& path);
 
 /// Writes a file with the data that all files have: attributes of the root, /study, /poses, and /run with facts of the
@@ -57,16 +56,16 @@ void check_names(std::span<const std::string> names, const std::string& path);
 void compose_file(const std::string& path, std::string_view filetype, std::string_view kind, const Study& study,
                   const SelectedPoses& poses, const RunFacts& facts,
                   const std::function<void(ResultBuilder&)>& compose);
-/// Adds to the result file the names that every result has: /factors, /responses, and /metric if the mechanism weighs
-/// angles against lengths.
+/// Adds to the result file the errors (/factors) and responses (/responses) with their names and units, and /metric if
+/// the mechanism weighs angles against lengths. factors: errors of the result.
 void add_names(ResultBuilder& result, const Study& study, std::span<const FactorIndex> factors);
-void read_header(const h5::File& file, StoredResult& result);  ///< Reads the data that every result has.
-SelectedPoses read_poses(const h5::File& file);                ///< Reads /poses, with the data stored beside the poses.
+void read_header(const h5::File& file, StoredResult& result);  ///< Reads the members of `result` that every file has.
+SelectedPoses read_poses(const h5::File& file);                ///< Reads /poses and /poses/rejected.
 RunFacts read_facts(const h5::File& file);                     ///< Reads /run.
 std::string stored_hash(const h5::File& file);    ///< The content hash that the file states; empty if it states none.
 CsvTable pose_table(const StoredResult& result);  ///< The table of poses.csv.
 
-/// The errors that a study varies and draws from measured parts.
+/// Those errors of a study that are drawn from measured parts.
 MeasuredErrors measured_errors(const Study& study);
 /// [errors] The means that a study states for the errors that it varies, SI; empty if all are zero.
 std::vector<double> stated_means(const Study& study);
@@ -85,8 +84,9 @@ std::vector<std::size_t> constant_responses(std::span<const std::uint8_t> varies
 
 /// The number of statuses that every result lists, the first of kStatusNames.
 inline constexpr std::size_t kLeastStatuses = 5;
-/// The statuses that a result of these samples lists: kStatusNames without those at the end with which no sample ended,
-/// but at least kLeastStatuses. So results without such samples have the same bits as before these statuses existed.
+/// The statuses that a result lists: the first of kStatusNames up to the last one with which a sample ended, but at
+/// least kLeastStatuses. So a result whose samples have only the older statuses has the same bits as before the newer
+/// ones existed.
 std::vector<std::string> listed_statuses(const SolveCounts& solves);
 /// The number of statuses on the axis /status. Throws h5::Error if their names differ from kStatusNames.
 std::size_t listed_statuses(const h5::File& file);
@@ -109,41 +109,41 @@ Solves read_solver(const h5::File& file) {
 /// A number that tells how the solves of a cell ended, with the heading of its column in a CSV file.
 struct SolveNumber {
   std::string name;                               ///< heading: "not_converged", "iterations_mean", ..., "solves_STATUS"
-  std::function<Number(const SolveCounts&)> get;  ///< number of a cell
+  std::function<Number(const SolveCounts&)> get;  ///< returns this number for the counts of a cell
 };
-/// All numbers that tell how solves ended. solves_not_assembled is among them only if a solve ended with this status.
+/// All numbers that tell how solves ended: failures, iterations, and one for each of listed_statuses().
 std::vector<SolveNumber> solve_numbers(std::span<const SolveCounts> solves);
-/// Adds to the table a column for each number of solve_numbers(); line n shows the n-th cell. The columns keep a
-/// reference to the solves.
+/// Adds to the table a column for each of solve_numbers(); line n shows solves[n]. The columns keep a reference to
+/// `solves`.
 void append_solve_columns(CsvTable& table, std::span<const SolveCounts> solves);
 
 /// Adds to the result file the list of the first failed samples. slots: names in StoredResult::varied, to which
-/// Failure::slot refers. total: number of all failures. Precondition: add_solver() was called.
+/// Failure::slot refers. total: number of all failures, listed or not. Precondition: add_solver() was called.
 void add_failures(ResultBuilder& result, const std::vector<Failure>& failures, const std::vector<std::string>& slots,
                   std::uint64_t total);
-/// Reads the list of failures. result: must have `varied` and `poses` already.
+/// Reads the list of failures. Precondition: result.varied and result.poses have been read.
 std::vector<Failure> read_failures(const h5::File& file, const StoredResult& result);
 CsvTable failure_table(const StoredResult& result);  ///< The table failures.csv of a result with samples.
 
 /// Adds to the result file the group /limits with the verdicts on the study's limits; nothing if the study states none.
 void add_limits(ResultBuilder& result, const ModelDescription& model, const std::optional<LimitVerdicts>& verdicts);
-/// Reads /limits; none if the study states no limits. result: must have `responses` already.
+/// Reads /limits; none if the study states no limits. Precondition: result.poses and result.responses have been read.
 std::optional<LimitVerdicts> read_limits(const h5::File& file, const StoredResult& result);
 /// Adds to `tables` the table limits.csv; nothing if the study states no limits.
 void append_limit_table(CsvTables& tables, const StoredResult& result);
 
-/// The confidence level of the intervals of a course of estimates, as an attribute of its group or of a dataset.
+/// The attribute with the confidence level of the intervals in a course of estimates.
 inline const std::vector<Attribute<EstimateCourse>> kCourseLevel{{"conf_level", &EstimateCourse::conf_level}};
 
-/// The names and descriptions of a course: estimates after ascending numbers of samples.
+/// The names and descriptions of the datasets and tables of a course of estimates (EstimateCourse).
 struct CourseWords {
   /// Datasets of the course. Their axes are those of the quantities, followed by the axis of the numbers of samples.
   Group<EstimateCourse> group;
-  std::string samples_axis;              ///< name of the axis of numbers of samples
+  std::string samples_axis;              ///< name of the axis along which the number of samples grows
   std::string samples_description;       ///< description of that axis
-  std::string csv;                       ///< beginning of the names of the course's CSV files
+  std::string csv;                       ///< beginning of the names of the CSV files, such as "convergence_"
   std::string csv_slot;                  ///< heading of the column with the names of the varied errors
-  std::vector<std::string> csv_columns;  ///< headings of the columns of the datasets
+  std::vector<std::string> csv_columns;  ///< headings of the CSV columns, one for each dataset
 };
 
 /// The names and descriptions of /convergence. axes: axes of the estimated quantities, beginning with the responses.
@@ -158,8 +158,8 @@ void add_course(ResultBuilder& result, const CourseWords& words, const EstimateC
 /// Reads the course that add_course() wrote.
 EstimateCourse read_course(const h5::File& file, const CourseWords& words);
 /// Adds to `tables` a table for each response, with a line for each varied error (slot) and each number of samples.
-/// ends: [slots] the final number of samples at each pose; empty if all slots reached the end of the course. Keeps
-/// references to all arguments.
+/// ends: [slots] the final number of samples at each pose; empty if all slots reached the end of the course. The tables
+/// refer to the arguments, which must outlive them.
 void append_course_tables(CsvTables& tables, const StoredResult& result, const CourseWords& words,
                           const EstimateCourse& found, std::span<const std::uint64_t> ends);
 

@@ -88,8 +88,8 @@ void check_same_study(const StoredShard& shard, const StoredShard& first) {
   }
 }
 
-/// The numbers of missing shards: "2, 5 and 7 more". Lists only the first ones, because a file may state any number of
-/// shards. Precondition: the shards are in order, none appears twice, and at least one is missing.
+/// The numbers of missing shards, from 1: "2, 5 and 7 more". Only the first 20 are listed, because a file may state any
+/// number of shards. Precondition: the shards are in order, none appears twice, and at least one is missing.
 std::string missing_text(std::span<const StoredShard> shards) {
   constexpr std::size_t kMostListed = 20;
   const std::size_t count = shards.front().shard.count;
@@ -116,8 +116,8 @@ void check_all_there(std::span<const StoredShard> shards) {
                    "run them with --shard and merge all of them");
 }
 
-/// The states of one stage (a call of `fold`) from all shards, joined in the order of the shards. Removes the states
-/// from the shards.
+/// Joins the states of one stage (a call of `fold`) from all shards, in the order of the shards, and removes them from
+/// `shards`.
 Bytes take_state(std::span<StoredShard> shards, std::size_t stage) {
   std::size_t bytes = 0;
   for (const StoredShard& shard : shards) bytes += shard.stages[stage].size();

@@ -29,12 +29,12 @@ void Checkpoints::end(bool complete, const SolveCounts& solves) {
 void Checkpoints::keep(const ByteSource& state) {
   if (!save_) return;
   Bytes& bytes = stages_[begun_ - 1].bytes;
-  bytes = Bytes();  // frees the older state first, because memory may not hold two states
+  bytes = Bytes();  // frees the older state first, because there may not be enough memory for two states
   if (is_large(size_of(state))) {
     try {
       return save(state);
     } catch (const FileError&) {
-      // Continues, because a copy of the state is made in memory below.
+      // The state is copied into memory below instead.
     }
   }
   bytes = bytes_of(state);
@@ -74,7 +74,8 @@ ByteSource Checkpoints::source_of(std::size_t stage) const {
   return [&kept](ByteWriter& to) { to.raw(kept.bytes); };
 }
 
-/// Saves the states of all stages. state: the present state of the stage that began last; null if keep() has stored it.
+/// Saves the states of all stages. state: writes the present state of the stage that began last; null if keep() has
+/// stored that state.
 void Checkpoints::save_all(const ByteSource* state) {
   if (!save_) return;
   std::vector<ByteSource> all;

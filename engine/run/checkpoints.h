@@ -11,61 +11,61 @@
 
 namespace poesy {
 
-/// The largest size, in bytes, of a finished stage's state that is kept in memory. Larger states are read again from
-/// the checkpoint file, if that is possible (Fetch).
+/// The largest size, in bytes, of a finished stage's state that is kept in memory. A larger state is read again from
+/// the checkpoint file if Checkpoints::Fetch is given.
 inline constexpr std::size_t kMostStateInMemory = std::size_t{64} << 20U;
 
 /// Saves the state of a run from time to time, so that another run can continue it. A run merges finished work in a
 /// fixed order, so between two merges its accumulators are its whole state. A study may have several stages, one for
-/// each call of fold() (engine/run/fold.h). A continued study goes through the same stages; in a finished stage nothing
-/// is left to solve. A state is written directly from the accumulators of its stage. Only small states of finished
-/// stages are kept in memory.
+/// each call of fold() (engine/run/fold.h). A study that is continued goes through all its stages again, but in a
+/// finished stage nothing is left to solve. The state of the running stage is written directly from its accumulators,
+/// without a copy in memory.
 class Checkpoints {
  public:
   /// A function that says whether it is time for another checkpoint.
   using Due = std::function<bool()>;
-  /// A function that saves the states of all stages, in order. It is never called from two threads at once. Throws
-  /// FileError; earlier saved states then stay saved.
+  /// A function that saves the states of all stages, in order. It is never called from two threads at once. If it
+  /// throws FileError, the states that were saved before stay saved.
   using Save = std::function<void(std::span<const ByteSource> stages)>;
   /// A function that writes to `to` the last saved state of a stage. Throws FileError.
   using Fetch = std::function<void(std::size_t stage, ByteWriter& to)>;
 
   /// Checkpoints that are never saved, for a run that will not be continued.
   Checkpoints() = default;
-  /// stages: the states that an earlier run saved; empty for a new run. fetch: if given, it returns these states until
-  /// the first save, and states of more than most_in_memory bytes are not kept in memory.
+  /// stages: the states that an earlier run saved; empty for a new run. fetch: if given, a state of more than
+  /// most_in_memory bytes is not kept in memory but read by fetch, which until the first save must return `stages`.
   Checkpoints(Due due, Save save, std::vector<Bytes> stages = {}, Fetch fetch = {},
               std::size_t most_in_memory = kMostStateInMemory);
 
-  /// Begins the next stage. Returns the state to restore; empty for a stage that starts afresh.
+  /// Begins the next stage. Returns the state that an earlier run saved for it; empty if there is none.
   Bytes begin();
-  /// Writes a checkpoint if one is due. Called after a merge. state: here and in the functions below, the state of the
-  /// stage that began last.
+  /// Writes a checkpoint if one is due; called after a merge. state: in this function and those below, it writes the
+  /// state of the stage that began last.
   void merged(const ByteSource& state) {
     if (due_ && due_()) save(state);
   }
   /// Records that the stage or one of its rounds has ended. complete: false if the run was stopped. solves: all solves
-  /// of the run, including those of the earlier run that it continues.
+  /// of this stage, including those of the earlier run that this run continues.
   void end(bool complete, const SolveCounts& solves);
   /// Keeps the final state of the stage: a small one in memory, a large one in a checkpoint that is written now. If the
-  /// disk has no room for the checkpoint, the state stays in memory, because the smaller result may still have room on
-  /// the disk.
+  /// checkpoint cannot be written, a large state stays in memory too: a full disk may still have room for the smaller
+  /// result.
   void keep(const ByteSource& state);
-  /// Writes a checkpoint after the run was stopped in work that comes after the stages. Such work has no state of its
-  /// own.
+  /// Writes a checkpoint if the run was stopped in work after the last stage. That work has no state: it is done again
+  /// when the run is continued.
   void stopped_after_stages();
 
   /// Returns true if all stages that began are complete, and the work after them was not stopped.
   bool complete() const;
-  /// The solves of the stages that have ended.
+  /// The sum of the solves of all stages that have ended.
   SolveCounts solves() const;
-  /// A copy of the state of each stage; an empty one for a stage without a kept state. Throws FileError.
+  /// Copies of the states of all stages; empty for a stage whose state was not kept. Throws FileError.
   std::vector<Bytes> stages() const;
 
   /// Writes a checkpoint with this state now.
   void save(const ByteSource& state);
-  /// Writes a checkpoint of the states that were kept. Does nothing if the last checkpoint has all of them and can be
-  /// read again.
+  /// Writes a checkpoint of the states that keep() stored. Does nothing if fetch can read all of them from the last
+  /// checkpoint.
   void save();
 
  private:
@@ -73,7 +73,7 @@ class Checkpoints {
     bool complete = false;
     SolveCounts solves;
   };
-  /// The state of a stage. It is in `bytes`, or if these are empty, in the checkpoint from which fetch_ reads.
+  /// The state of a stage: in `bytes`, or if these are empty, in the checkpoint from which fetch_ reads.
   struct Kept {
     Bytes bytes;
     bool is_saved = false;  ///< true if fetch_ returns this state or an earlier state of the stage
@@ -91,7 +91,7 @@ class Checkpoints {
   /// not begun yet.
   std::vector<Kept> stages_;
   std::size_t begun_ = 0;
-  std::vector<End> ends_;  ///< ends of the finished stages
+  std::vector<End> ends_;  ///< [stages that began] how each stage, or its last round, ended
   bool stopped_ = false;
   bool is_saved_ = false;  ///< true if fetch_ returns the present state of every stage
 };
@@ -111,14 +111,14 @@ class Stage {
     if (!state.empty()) restore(std::span<const std::byte>(state));
   }
 
-  /// Called between two merges: writes a checkpoint with this state when one is due.
+  /// Writes a checkpoint with this state if one is due. Called between two merges.
   void merged(const ByteSource& state) {
     if (checkpoints_ != nullptr) checkpoints_->merged(state);
   }
 
   /// Ends the stage or one of its rounds. complete: false if the run was stopped; a checkpoint is then written. If the
-  /// stage is complete, all other ranks take the state of rank 0 by restore(state). solves(): all solves of the run,
-  /// including those of the earlier run that it continues.
+  /// stage is complete, every other rank calls restore(state) with the state of rank 0. solves(): all solves of the
+  /// stage, including those of the earlier run that this run continues.
   template <class Solves, class Restore>
   void end(bool complete, const Solves& solves, const ByteSource& state, const Restore& restore) {
     const bool follows = team_ != nullptr && !team_->leads();
@@ -126,7 +126,7 @@ class Stage {
     if (checkpoints_ != nullptr) checkpoints_->end(complete, solves());
     if (follows) return;
     if (checkpoints_ != nullptr && complete) checkpoints_->keep(state);
-    // Saved before the other ranks are told, because a stopped process may have little time left.
+    // The checkpoint is written before the other ranks are told, because a stopped process may have little time left.
     if (checkpoints_ != nullptr && !complete) checkpoints_->save(state);
     if (team_ != nullptr) team_->end(complete, complete ? bytes_of(state) : Bytes());
   }

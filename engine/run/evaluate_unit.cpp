@@ -11,13 +11,13 @@
 namespace poesy {
 namespace {
 
-/// The largest magnitude to expect of an error: for a normal error its mean plus four standard deviations, which one
-/// draw in 16 000 exceeds.
+/// The largest magnitude to expect of an error: |mean| plus four standard deviations, which one of 16 000 normal draws
+/// exceeds, but not more than the largest value of the distribution.
 double expected_range(const Distribution& distribution) {
   return std::min(distribution.largest(), std::abs(distribution.mean()) + 4.0 * distribution.standard_deviation());
 }
 
-/// Counts how the samples of a unit ended.
+/// Adds the status and the iterations of each sample of a unit to the counts in `found`.
 template <class Unit>
 void count_ends(const WorkUnit& unit, const UnitOutcomes& outcomes, Unit& found) {
   for (std::size_t b = 0; b < unit.count; ++b) {
@@ -144,7 +144,7 @@ UnitOutcomes UnitEvaluator::solve(const WorkUnit& unit, std::span<const double> 
   plan_->distributions()[unit.slot].transform(draws);
   const ArrayView<double, Axis<"scale">, axis::Sample> scaled{std::span(values_).first(count),
                                                               {scales.size(), unit.count}};
-  // Goes backwards, because row 0 has the draws from which all rows are computed and is overwritten last.
+  // Goes backwards: row 0 contains the draws, from which all rows are computed, so it must be overwritten last.
   for (std::size_t k = scales.size(); k-- > 0;) {
     for (std::size_t b = 0; b < unit.count; ++b) scaled(k, b) = scales[k] * draws[b];
   }

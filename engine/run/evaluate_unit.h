@@ -16,7 +16,7 @@
 
 namespace poesy {
 
-/// The statistics of one work unit.
+/// The statistics of one work unit (consecutive samples of one slot at one pose, see Plan).
 struct UnitStats {
   /// [responses] Moments of each response over the samples that count in statistics (counts()).
   std::vector<Moments> responses;
@@ -29,13 +29,14 @@ struct UnitStats {
   void state(Archive& archive, std::uint64_t first);
 };
 
-/// The output of one work unit of a sensitivity study: its statistics, and the indices after some of its first samples.
+/// The output of one work unit of a sensitivity study: its statistics, and the sensitivity indices over its first 100,
+/// 200, ... samples.
 struct CellUnit : UnitStats {
-  /// [history points x responses] Indices over the first samples of the unit, for each number of samples in
-  /// points_within().
+  /// [history points x responses] Local sensitivity indices over the first samples of the unit, for each number of
+  /// samples in points_within().
   std::vector<LocalIndex> within;
 
-  /// Reads or writes the unit as a message between ranks. first: number of its first sample.
+  /// Reads or writes the unit as a message between ranks. first: number of the first sample of the unit.
   void state(Archive& archive, std::uint64_t first);
 };
 
@@ -45,7 +46,7 @@ struct ResponseUnit {
   Moments moments;     ///< moments of the values
   NumberBlock values;  ///< the values, prepared for a quantile sketch
 
-  void state(Archive& archive) { archive.objects(moments, values); }  ///< Reads or writes both.
+  void state(Archive& archive) { archive.objects(moments, values); }  ///< Reads or writes both members.
 };
 
 /// The output of one work unit of a Monte Carlo study.
@@ -53,27 +54,28 @@ struct PoseUnit {
   std::vector<ResponseUnit> responses;    ///< [responses] data of each response
   SolveCounts solves;                     ///< how the solves of the unit ended
   FailedSamples failed;                   ///< the first failed samples
-  std::optional<MainEffectSums> effects;  ///< main effects, at the poses where they are summed
+  std::optional<MainEffectSums> effects;  ///< sums for main effects; only if the pose is one of effect_poses()
 
-  /// Reads or writes the unit as a message between ranks. first: number of its first sample. errors: the number of
-  /// errors that vary.
+  /// Reads or writes the unit as a message between ranks. first: number of the first sample of the unit. errors: the
+  /// number of errors that vary.
   void state(Archive& archive, std::size_t errors, std::uint64_t first);
 };
 
-/// Reads or writes how the samples of a unit or a cell ended. first: number of the first one of these samples.
+/// Reads or writes how consecutive samples ended: their counts, and the first failures. first: number of the first
+/// sample.
 void ends_state(Archive& archive, SolveCounts& solves, FailedSamples& failed, std::uint64_t first);
-/// Reads or writes how the solves of `count` machines ended, at each pose. The numbers of the machines are in [first,
-/// end).
+/// Reads or writes how the solves of `count` machines ended; `solves` and `failed` have an element for each pose. The
+/// numbers of the machines are in [first, end).
 void ends_state(Archive& archive, std::span<SolveCounts> solves, std::span<FailedSamples> failed, std::uint64_t count,
                 std::uint64_t first, std::uint64_t end);
 
 /// The numbers of samples after which a sensitivity study with a fixed number of samples records its indices,
-/// ascending: 100, 200, 500, 1000, 2000, 5000, ... up to Plan::samples(). A study with more samples has the same list
-/// with further numbers. Numbers above Plan::kUnitSamples are whole units. Empty if samples are adaptive.
+/// ascending: 100, 200, 500, 1000, 2000, 5000, ... up to Plan::samples(). Numbers above Plan::kUnitSamples are
+/// multiples of it, so each of them is the end of a unit. Empty if the number of samples is adaptive.
 std::vector<std::size_t> history_points(const Plan& plan);
 
-/// The history points (numbers of samples, see history_points()) below unit.count, for the first unit of a cell; none
-/// for later units. Keeps a reference to `points`.
+/// Those of the history_points() that are below unit.count, if the unit has the first samples of an error at its pose;
+/// none for later units. The result refers to `points`.
 std::span<const std::size_t> points_within(const WorkUnit& unit, std::span<const std::size_t> points);
 
 /// The largest number of poses at which a sensitivity study solves again to check an assumption, such as linearity.
@@ -86,7 +88,7 @@ constexpr std::size_t some_poses(std::size_t poses) { return std::min(kSomePoses
 /// order of the study's poses. Precondition: n < some_poses(poses).
 constexpr PoseIndex some_pose(std::size_t n, std::size_t poses) { return PoseIndex(n * poses / some_poses(poses)); }
 
-/// The outcomes of the samples of one work unit. Keeps a reference to the solver's scratch, and is valid until its next
+/// The outcomes of the samples of one work unit. They refer to memory of the solver, and are valid until its next
 /// solve.
 struct UnitOutcomes {
   std::span<const double> values;             ///< [varied errors x samples] errors that vary, SI
@@ -104,8 +106,8 @@ class UnitSolver {
 
   /// Fills a row with the uniform numbers from which the errors of plan.factors()[slot] are computed.
   void draw_uniforms(const WorkUnit& unit, std::size_t slot, std::span<double> row) const;
-  /// Fills values_ with the uniform numbers of all factors, one row of samples for each factor. Returns the bins of
-  /// these numbers.
+  /// Fills values_ [factors x samples] with the errors of the unit. Returns the bins, for main effects, of the uniform
+  /// numbers from which the errors were computed.
   EffectBins draw_in_bins(const WorkUnit& unit);
   /// For errors that a machine draws anew at each pose, replaces their rows in values_ [factors x samples] by the draws
   /// at the unit's pose.
@@ -113,10 +115,12 @@ class UnitSolver {
   /// Uses the evaluator `other`, which must outlive these solves, for all further solves until the next call of this
   /// function. null: uses the model's own evaluator again.
   void solve_by(Evaluator* other) { other_ = other; }
-  /// The first `count` samples of the present draws of all factors. Their pose is not set.
+  /// The first factors x count numbers of values_ as a block of `count` samples, in which all factors vary. Its pose is
+  /// not set.
   SampleBlock drawn(std::size_t count) const;
   /// Solves the first [varied x count] numbers of values_ at a pose. range: the largest magnitude to expect of an
-  /// error. details: memory for the model's additional outputs, see OutcomeBlock; empty if they are not wanted.
+  /// error; 0 if not known. details: memory for the model's additional outputs, see OutcomeBlock; empty if they are not
+  /// wanted.
   UnitOutcomes solve(PoseIndex pose, std::span<const FactorIndex> varied, std::size_t count, double range,
                      std::span<double> details = {});
 
@@ -139,9 +143,10 @@ class UnitEvaluator : private UnitSolver {
   /// Keeps references to both arguments.
   UnitEvaluator(const Plan& plan, const Model& model);
 
-  /// Solves the whole unit.
+  /// Solves all samples of the unit, and returns their statistics.
   CellUnit operator()(const WorkUnit& unit);
-  /// Solves samples of a cell, at most Plan::kUnitSamples. The outcome of a sample is the same in any unit.
+  /// Solves the samples of the unit, at most Plan::kUnitSamples. The outcome of a sample does not depend on the unit in
+  /// which it is solved.
   UnitOutcomes solve(const WorkUnit& unit);
   /// Multiplies the unit's draws by each of these scales, and solves the products: [scales x samples], one scale after
   /// the other. Preconditions: scales are between -1 and 1; there are at most Plan::kUnitSamples products.
@@ -160,13 +165,13 @@ class PoseUnitEvaluator : private UnitSolver {
   /// Keeps references to both arguments.
   PoseUnitEvaluator(const Plan& plan, const Model& model);
 
-  /// Solves the whole unit.
+  /// Solves all samples of the unit, and returns their statistics.
   PoseUnit operator()(const WorkUnit& unit);
-  /// Solves samples of a cell; see UnitEvaluator::solve().
+  /// Solves the samples of the unit; see UnitEvaluator::solve().
   UnitOutcomes solve(const WorkUnit& unit);
 
  private:
-  /// Solves the draws in values_.
+  /// Solves the samples whose errors are in values_.
   UnitOutcomes solve_drawn(const WorkUnit& unit);
   std::span<const double> only_counting(std::span<const double> outcomes, std::span<const SolveStatus> status);
   MainEffectSums effects_of(const UnitOutcomes& outcomes, const EffectBins& bins) const;

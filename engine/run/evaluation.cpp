@@ -17,7 +17,8 @@ namespace {
 /// The number of rows of the error table that are solved together at one pose.
 constexpr std::size_t kBlockRows = 256;
 
-/// How the solves with numbers in [first, end) ended. Solves are numbered pose by pose.
+/// Counts of how the solves with numbers in [first, end) ended. Solves are numbered pose by pose, then sample by
+/// sample.
 SolveCounts solves_of(const EvaluationResult& result, std::size_t first, std::size_t end) {
   SolveCounts solves;
   for (std::size_t n = first; n < end; ++n) solves.add(result.status.all()[n], result.iterations.all()[n]);
@@ -79,7 +80,7 @@ struct TableJob {
   EvaluationResult& result;
   std::vector<double> zeros;
 
-  /// The scratch of one thread.
+  /// The scratch memory of one thread.
   struct Scratch {
     std::unique_ptr<Evaluator> evaluator;
     std::vector<double> values;
@@ -103,7 +104,7 @@ struct TableJob {
   }
   OutcomeBlocks sums() const { return {&result}; }
 
-  // The functions below do the work of a worker.
+  // The functions below are called by the workers.
 
   OutcomeBlocks solve(Scratch& scratch, std::size_t n) const {
     const std::size_t pose = n / sums().per_pose();
@@ -119,7 +120,7 @@ struct TableJob {
     scatter(scratch, pose, first, count);
     return sums();
   }
-  /// Copies rows of the error table, error by error.
+  /// Copies `count` rows of the error table from row `first` on, transposed: all samples of the first error come first.
   void take_rows(std::size_t first, std::size_t count, std::vector<double>& values) const {
     const std::size_t varied = errors.factors.size();
     values.resize(varied * count);
@@ -150,7 +151,7 @@ std::size_t number_of_rows(const EvaluationResult& found, Pairing pairing) {
 /// How one row of errors (a machine) compares with one limit.
 struct JudgedRow {
   bool within = false;
-  /// Number that is compared with the limit, from the poses whose solves count (counts()); NaN without such a pose.
+  /// Number that is compared with the limit, from the poses whose solves count (counts()); NaN if no solve counts.
   double value = kNaN;
   std::optional<std::size_t> pose = std::nullopt;  ///< pose at which `value` occurs, if it is the value at one pose
 };

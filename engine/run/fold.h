@@ -20,8 +20,9 @@ namespace poesy {
 
 /// Calls work(worker, n) for n = 0 .. count - 1 on a pool of threads, where each thread has its own worker. Calls
 /// finish(n, output) in the order of n. At any time, only a few outputs for each thread wait for finish(). Returns
-/// false when stopped. With a team, work is done on all ranks, and finish is called only on rank 0 (run_over_ranks);
-/// state(archive, n, output) writes an output on another rank, and reads it into an empty output on rank 0.
+/// false if the run was stopped. With a team, work is done on all ranks, and finish is called only on rank 0
+/// (run_over_ranks); state(archive, n, output) writes an output on another rank, and reads it into an empty output on
+/// rank 0.
 template <class MakeWorker, class Work, class Finish, class State>
 bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_worker, Work work, Finish finish,
                   State state) {
@@ -38,8 +39,8 @@ bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_
   return alone ? run_alone(count, options, in_slots) : run_over_ranks(count, options, in_slots);
 }
 
-/// Reads or writes the beginning of a state: the name of the job to which the state belongs, and sizes. When reading,
-/// throws BytesError if the state has another name or another size.
+/// Reads or writes the beginning of a state: the name of the job to which the state belongs, and numbers such as those
+/// of poses and responses. When reading, throws BytesError if the state has another name or another size.
 inline void head_state(Archive& archive, std::string_view name, std::span<const std::uint64_t> sizes) {
   constexpr const char* kOther = "is the state of another kind or size of study";
   std::string read(name);
@@ -51,21 +52,21 @@ inline void head_state(Archive& archive, std::string_view name, std::span<const 
 /// Does the work of one stage of a study, on all threads and ranks. The stage is divided into pieces, which are merged
 /// in order into `work`, the accumulator of the stage. It begins with the state of the checkpoint, if there is one, and
 /// makes as many rounds as `work` asks for. The accumulator has the same bits on all ranks, for any number of threads
-/// and ranks, and whether or not the stage was continued from a checkpoint. Returns false when stopped. The type Work
-/// has these functions:
+/// and ranks, and whether or not the stage was continued from a checkpoint. Returns false if the run was stopped. The
+/// type Work has these functions:
 ///
-///     std::size_t begin_round()              numbers the round's pieces of work 0 .. count - 1, and gives count
+///     std::size_t begin_round()              begins a round; returns the number of its pieces of work
 ///     Worker worker() const                  solves pieces, and owns the scratch of one thread
 ///     Piece solve(Worker&, std::size_t n)    solves the n-th piece, on any thread
 ///     void piece_state(Archive&, std::size_t n, Piece&)   writes a piece, or reads it into an empty one on rank 0
-///     SolveCounts merge(std::size_t n, Piece&&)   adds the n-th piece, in order; returns how its solves ended
+///     SolveCounts merge(std::size_t n, Piece&&)   adds the pieces in the order of n; returns how the solves ended
 ///     SolveCounts solved() const             solves of all merged pieces, including those of earlier runs
-///     std::uint64_t left() const             solves that are still expected in this round
-///     void state(Archive&)                   writes everything merged so far, or replaces it by what it reads
+///     std::uint64_t left() const             solves that are still expected in the stage
+///     void state(Archive&)                   writes all merged sums, or replaces them by those that it reads
 ///     bool next_round()                      ends the round; returns whether another one follows
 ///
-/// UnitFold and PoseFold implement this for all kinds of studies. A kind only adds what a piece solves, and how its
-/// results are summed.
+/// UnitFold and PoseFold are such types. A kind of study gives them a job, which states what a piece solves and how its
+/// output is summed.
 template <class Work>
 bool fold(Work& work, const RunOptions& options) {
   const auto restore = [&](std::span<const std::byte> bytes) {

@@ -17,11 +17,11 @@
 
 namespace poesy {
 
-/// The parts of the memory that a run takes at its peak, while it writes its result, in bytes. The memory of the
-/// program itself is not included.
+/// The memory that a run takes at its peak, which is when it writes its result, in bytes. The memory of the program
+/// itself is not included.
 struct MemoryOutlook {
   std::size_t accumulators = 0;  ///< the accumulators, which still exist when the result is computed
-  /// The state in a checkpoint; at the end of a run, a state above kMostStateInMemory is only on disk.
+  /// The state in a checkpoint. At the end of a run it is also in memory, unless it is larger than kMostStateInMemory.
   std::size_t state = 0;
   std::size_t result = 0;  ///< the numbers of the result
   std::size_t file = 0;    ///< the result file, which is composed on disk
@@ -33,21 +33,21 @@ struct MemoryOutlook {
 
 /// Work of a study in pieces. A few pieces are done to measure how long the whole work takes.
 struct WorkOutlook {
-  /// Does the piece that begins at the share `at` of the work, 0 <= at < 1, on the calling thread. Returns the piece's
-  /// share of the work.
+  /// Does a small piece of the work on the calling thread. at: where in the work the piece begins, 0 <= at < 1. Returns
+  /// the piece's share of the whole work.
   std::function<double(double at)> do_piece;
   double times = 1.0;  ///< number of times that the study does the whole work
-  /// Called once before the first piece; its time does not count. May be empty.
+  /// A function that is called once before the first piece, and whose time is not measured. May be empty.
   std::function<void()> prepare = {};
 };
 
 /// The expected cost of a study: solves, memory and kinds of work. It keeps references to the study, the model and the
 /// poses.
 struct Outlook {
-  std::string solves;               ///< text: the number of solves, and the product from which it results
+  std::string solves;               ///< number of solves, as a text: "3 errors x 2 poses x 1000 samples = 6000 solves"
   MemoryOutlook memory;             ///< memory in addition to that of the program itself
   std::vector<WorkOutlook> shared;  ///< work that all threads share: the solves
-  /// Work that only one thread does, such as separating errors or reading saved states.
+  /// Work that one thread does while the others wait, such as separating errors or reading saved states.
   std::vector<WorkOutlook> by_one;
   /// With adaptive samples: the least number of solves, as a fraction of the largest number; 1 if the number of samples
   /// is fixed.
@@ -62,8 +62,8 @@ struct WorkSeconds {
   double merging = 0.0;  ///< seconds for Outlook::merging, the work of one thread at a time
   double by_one = 0.0;   ///< seconds for Outlook::by_one, the work of only one thread
 
-  /// Seconds for the whole study with these threads, of which one at a time merges. share: number of solves that the
-  /// study makes, as a share of the largest number; below 1 if adaptive samples end early.
+  /// Seconds for the whole study on this number of threads, of which one at a time merges. share: solves that the study
+  /// makes, as a share of the largest number; below 1 if adaptive sampling ends early.
   double on(std::size_t threads, double share = 1.0) const;
 };
 
@@ -74,28 +74,30 @@ inline constexpr std::size_t kWholeNumber = 3;
 inline constexpr std::size_t kStoredMoments = kWholeNumber + 4 * sizeof(double);
 inline constexpr std::size_t kStoredSolves = (kStatusNames.size() + 2) * kWholeNumber;
 /// @}
-/// Bytes that the counts of one cell take in the group /solver of a result: failures, mean and largest number of
-/// iterations, samples by status.
+/// Bytes that one cell (a varied error at a pose, or a pose) takes in the group /solver of a result: failures, mean and
+/// largest number of iterations, samples by status.
 inline constexpr std::size_t kSolverColumns = (2 + kStatusNames.size()) * sizeof(double) + sizeof(std::uint32_t);
 
-/// The memory of `count` items, each of which takes `each`.
+/// The memory of `count` things, of which each takes the memory `each`.
 MemoryOutlook times(std::size_t count, const MemoryOutlook& each);
-/// Bytes of the outcomes of one row of errors at one pose.
+/// Bytes of an EvaluationResult for one row of errors at one pose.
 std::size_t outcome_bytes(const ModelDescription& model, Outcomes outcomes);
 
-/// A number of things as text that can be followed by another factor: "3 errors x ".
+/// The text "COUNT THINGS", such as "3 errors x " for the things "errors x ".
 std::string counted_things(std::size_t count, std::string_view things);
 /// The number of samples at each pose as text; for adaptive samples a range, such as "1000 to 100000".
 std::string samples_text(const Plan& plan);
-/// The number of solves as text, such as "at least 3000 and at most 300000 solves".
+/// The number of solves as text, such as "at least 3000 and at most 300000 solves". fidelities: number of models that
+/// solve each sample.
 std::string solves_text(const Plan& plan, std::size_t fidelities);
 /// The least number of solves with adaptive samples, as a share of the largest number.
 double least_share(const Plan& plan);
 
-/// A shared pointer to a model that it does not own.
+/// A shared pointer that does not own the model.
 inline std::shared_ptr<const Model> borrowed(const Model& model) { return {std::shared_ptr<const Model>(), &model}; }
 
-/// The work of solving all draws of the plan. A piece of this work is a few samples of one unit.
+/// The work of solving all samples of the plan. A piece of this work is at most 200 samples of one unit. times: see
+/// WorkOutlook.
 template <class SolveUnit>
 WorkOutlook sampling(const std::shared_ptr<const Plan>& plan, const std::shared_ptr<const Model>& model, double times) {
   struct Sampler {

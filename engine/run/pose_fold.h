@@ -21,8 +21,8 @@ namespace poesy {
 /// that are still to be solved, the rounds of adaptive samples, shards, and states. A job is a type with everything
 /// else:
 ///
-///     static constexpr std::string_view kName     name of its states, unique among all jobs
-///     std::vector<std::uint64_t> sizes() const    sizes that a state must have to be read
+///     static constexpr std::string_view kName     name in the states, unique among all jobs
+///     std::vector<std::uint64_t> sizes() const    numbers that must be the same in a state to be read
 ///     Rounds::Rule rule() const                   the rule of adaptive samples
 ///     Worker worker() const                       solves units, and owns the scratch of one thread: worker(unit)
 ///     void unit_state(Archive&, const WorkUnit&, Unit&) const   reads or writes a unit, which has a member `solves`
@@ -31,11 +31,11 @@ namespace poesy {
 ///
 /// The sums have the interface of CellSums:
 ///
-///     static constexpr bool kOfRound              whether sums are of one round only, made anew for each round
+///     static constexpr bool kOfRound              true if sums are made anew for each round
 ///     void add(const WorkUnit&, const Unit&)      adds the next unit of its cell
-///     std::size_t units_done(std::size_t cell) const
-///     SolveCounts total() const
-///     void state(Archive&, std::size_t samples)   writes all cells; or reads and adds sums of a plan with `samples`
+///     std::size_t units_done(std::size_t cell) const   number of units of a cell that were added
+///     SolveCounts total() const                   solves of all units that were added
+///     void state(Archive&, std::size_t samples)   writes all sums; or reads and adds sums of a plan with `samples`
 template <class Job>
 class PoseFold {
  public:
@@ -45,7 +45,7 @@ class PoseFold {
   /// The type of the sums to which units are added.
   using Sums = decltype(std::declval<const Job&>().sums(std::declval<const Plan&>(), {}));
 
-  /// Works on the shard of the options, if they have one. Keeps references to the plan and the job.
+  /// Does the cells of options.shard, or all cells without a shard. Keeps references to the plan and the job.
   PoseFold(const Plan& plan, const Job& job, const RunOptions& options)
       : plan_(plan), job_(job), shard_(options.shard.value_or(Shard())), rounds_(plan, job.rule()) {
     begin_sums();
@@ -102,8 +102,8 @@ class PoseFold {
   }
   /// @}
 
-  Sums& sums() { return *sums_; }  ///< The sums of all units that were solved.
-  /// Tells how the adaptive sampling ended; empty if the number of samples was fixed. Precondition: no round follows.
+  Sums& sums() { return *sums_; }  ///< The sums of all units that were merged.
+  /// How the adaptive sampling ended; empty if the number of samples was fixed. Precondition: all rounds have ended.
   std::optional<ConvergenceResult> convergence() const { return rounds_.result(); }
 
  private:
@@ -114,8 +114,8 @@ class PoseFold {
     if constexpr (Sums::kOfRound) part_.emplace(plan_.with_samples(rounds_.samples(0)));
     sums_.emplace(job_.sums(plan_of_sums(), shard_));
   }
-  /// Reads or writes the sums of all units that were added. A state that was merged from shards has the sums of one
-  /// shard after the other; each call reads those of one shard.
+  /// Writes the sums of all units, or reads the sums of one shard. A state that was merged from several shards has
+  /// their sums one after the other.
   void part_state(Archive& archive) {
     head_state(archive, Job::kName, job_.sizes());
     archive.known(plan_.cells(), "has other cells");
@@ -129,8 +129,8 @@ class PoseFold {
   const Job& job_;
   Shard shard_;
   Rounds rounds_;
-  std::optional<Plan> part_;  ///< plan with the samples of the round, if sums are made anew for each round (kOfRound)
-  std::optional<Sums> sums_;  ///< sums of the units; they refer to the plan part_ or plan_
+  std::optional<Plan> part_;             ///< plan with only the samples of this round; none unless kOfRound
+  std::optional<Sums> sums_;             ///< sums of the units; they refer to the plan part_ or plan_
   std::optional<PendingUnits> pending_;  ///< units to be solved in this round
 };
 
@@ -139,21 +139,21 @@ class PoseFold {
 /// from the sums of the full units only. `Store` is a type that holds the sums of several cells. It has these members:
 ///
 ///     Store(std::size_t responses, std::size_t cells)    sums of no samples; Store() has no cells
-///     std::vector<SolveCounts> solves                    [cells]
+///     std::vector<SolveCounts> solves                    [cells] how the solves of each cell ended
 ///     void merge(std::size_t cell, const Unit&)          adds later samples of a cell
 ///     void merge(Store later)                            adds later samples of each cell
 ///     void state(Archive&, std::size_t cell, std::uint64_t first)   reads or writes a cell; first: its first sample
-///     Store part(const NumberRange& cells) const         some of the cells
+///     Store part(const NumberRange& cells) const         a copy with only these cells
 template <class Store>
 class CellSums {
  public:
-  static constexpr bool kOfRound = false;  ///< The sums are kept from round to round.
+  static constexpr bool kOfRound = false;  ///< The sums of a round are continued in the next round.
 
   /// Sums without samples, for the cells of a shard and R responses. Keeps a reference to the plan.
   CellSums(const Plan& plan, std::size_t responses, const Shard& shard)
       : plan_(&plan), responses_(responses), cells_(shard.of(plan.cells())) {}
 
-  /// Adds a unit. Precondition: it is the next unit of its cell.
+  /// Adds the output of a unit. Precondition: all earlier units of its cell have been added.
   template <class Unit>
   void add(const WorkUnit& unit, const Unit& found) {
     const std::size_t cell = cell_of(unit);
@@ -212,12 +212,13 @@ class CellSums {
   std::uint64_t samples_in(const Store& store, std::size_t cell) const {
     return !store.solves.empty() && cells_.holds(cell) ? store.solves[cell - cells_.first].total() : 0;
   }
-  /// The store, with room for the cells of the shard.
+  /// The same store, after it was given room for the cells of the shard.
   Store& with_room(Store& store) const {
     if (store.solves.empty()) store = Store(responses_, cells_.end - cells_.first);
     return store;
   }
-  /// Reads or writes a cell. first: number of its first sample. Returns the number of samples.
+  /// Reads or writes the sums of a cell in a store. first: number of the first sample of these sums. Returns the number
+  /// of their samples.
   std::uint64_t store_state(Archive& archive, Store& store, std::size_t cell, std::uint64_t first) const {
     with_room(store).state(archive, cell, first);
     return store.solves[cell].total();
@@ -239,7 +240,7 @@ class CellSums {
     if (samples == plan_->samples()) {
       part = store_state(archive, parts_, cell - cells_.first, whole);
     } else {
-      Store left_out(responses_, 1);  // dropped, because in a study with more samples another unit takes its place
+      Store left_out(responses_, 1);  // dropped: this study has more samples, and so a larger unit instead
       part = store_state(archive, left_out, 0, whole);
     }
     const bool is_part = part > 0 && part < Plan::kUnitSamples && whole + part == samples;

@@ -9,10 +9,11 @@
 namespace poesy {
 namespace {
 
-/// The permitted error of a response by series, as a share of its largest magnitude at the nodes.
+/// The permitted error of a response that is computed from a series, as a share of the largest magnitude of the
+/// response at the nodes.
 constexpr double kPrecise = 1e-14;
 
-/// The relative rounding errors of squares at the nodes, and of a series through these squares.
+/// The relative rounding error of a square at a node, and of a series through such squares.
 constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
 
 double largest_magnitude(std::span<const double> values) {
@@ -49,8 +50,8 @@ bool ResponseSeries::form(double range, std::span<const double> solved) {
   return is_certified(solved);
 }
 
-/// Returns true if the response is the norm of signed responses, in all solves. A user's own response may weigh its
-/// components, so that it is not their norm.
+/// Returns true if response r is the norm of its components in all solves, and each component is a series of its own. A
+/// response that a study defines may weigh its components, so that it is not their norm.
 bool ResponseSeries::is_norm(std::size_t r, std::span<const double> solved) const {
   const std::vector<std::size_t>& components = responses_[r].components;
   const auto has_sign = [&](std::size_t c) { return c < r && rows_[c].form == Form::itself; };
@@ -64,13 +65,13 @@ bool ResponseSeries::is_norm(std::size_t r, std::span<const double> solved) cons
   return true;
 }
 
-/// Forms the series of one response. Returns false if it does not converge.
+/// Forms the series of response r. Returns false if the series does not converge. all: [responses x kSolves].
 bool ResponseSeries::form_row(std::size_t r, std::span<const double> all) {
   const std::span<const double> solved = all.subspan(r * kSolves, kSolves);
   const double largest = largest_magnitude(solved.first(kNodes));
   Row& row = rows_[r];
   row.precise = std::max(kPrecise * largest, least_[r]);
-  if (largest <= least_[r]) return true;  // rounding alone: the series without terms, which is 0
+  if (largest <= least_[r]) return true;  // the response is only rounding: its series has no terms and gives 0
   if (is_norm(r, all)) {
     row.form = Form::norm;
     return true;
@@ -79,7 +80,7 @@ bool ResponseSeries::form_row(std::size_t r, std::span<const double> all) {
   std::ranges::copy(solved.first(kNodes), values.begin());
   double precise = row.precise;
   if (responses_[r].is_magnitude()) {
-    const bool is_zero = solved[kNodes] <= row.precise;  // true if the response is 0 without the error
+    const bool is_zero = solved[kNodes] <= row.precise;  // the error is 0 at the first check
     row.form = is_zero ? Form::root_over_error : Form::root;
     for (std::size_t k = 0; k < kNodes; ++k) {
       values[k] = square(is_zero ? values[k] / ChebyshevSeries::nodes()[k] : values[k]);
@@ -108,7 +109,8 @@ bool ResponseSeries::is_certified(std::span<const double> solved) {
   return true;
 }
 
-/// Computes a response that is the norm of other responses, in all rows `responses` [R x B].
+/// Computes response r as the norm of its components. responses: [responses x errors]; the rows before r are computed
+/// already.
 void ResponseSeries::take_norm(std::size_t r, std::span<double> responses) const {
   const std::size_t count = x_.size();
   const ArrayView<double, axis::Response, axis::Sample> all(responses, {rows_.size(), count});

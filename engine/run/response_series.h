@@ -11,31 +11,33 @@
 
 namespace poesy {
 
-/// Series of all responses of a model in one error, at one pose. Responses with a sign are smooth functions of the
-/// error, so each of them is a series. A response without a sign is the root of a smooth function:
+/// Chebyshev series that give all responses of a model as functions of one error, at one pose. A response with a sign
+/// is a smooth function of the error, and has a series of its own. A response without a sign is computed from smooth
+/// functions:
 ///
-/// - of the sum of the squares of its components, if these are signed responses and it is their norm;
-/// - otherwise of its own square, divided by the square of the error if the response is 0 without the error.
+/// - as the norm of its components, if these have a sign and it is their norm in all solves;
+/// - otherwise as the root of its square, which has a series. If the response is 0 without the error, that is instead a
+///   series of its square divided by the square of the error.
 class ResponseSeries {
  public:
   static constexpr std::size_t kNodes = ChebyshevSeries::kNodes;  ///< solves from which the series are formed
   static constexpr std::size_t kChecks = 8;                       ///< further solves that certify the series
   static constexpr std::size_t kSolves = kNodes + kChecks;        ///< all solves for one pose and error
 
-  /// Copies what it needs of the model.
+  /// The model need not outlive this object.
   explicit ResponseSeries(const Model& model);
 
-  /// The errors at which the model must be solved: the nodes over +-range, then the checks. The first check is 0, and
-  /// the others are multiples of the golden ratio, which lie evenly between the nodes.
+  /// The errors at which the model must be solved: the nodes over +-range, then the checks. The first check is 0. The
+  /// others, from the fractional parts of multiples of the golden ratio, are spread evenly over the range.
   static std::array<double, kSolves> errors(double range);
 
-  /// Forms the series from the responses [R x kSolves] at errors(range). Returns false if a series has not converged,
-  /// or differs from a response at a check by more than 1e-14 of its largest magnitude at the nodes and more than its
-  /// rounding (Model::rounding()). The series must not be evaluated then.
+  /// Forms the series from the responses [responses x kSolves] at errors(range). Returns false if a series has not
+  /// converged, or differs from a response at a check by more than 1e-14 of its largest magnitude at the nodes and more
+  /// than its rounding (Model::rounding()). After false, evaluate() must not be called.
   bool form(double range, std::span<const double> solved);
 
-  /// Computes the responses [R x B] at these errors [B]. Adds to `left` the indices of errors that must be solved
-  /// instead: those beyond the range, and those at which the root of a series is not precise.
+  /// Computes the responses [responses x errors] at these errors (SI). Adds to `left` the indices of the errors that
+  /// must be solved instead: those beyond the range, and those at which the root of a series is not precise.
   void evaluate(std::span<const double> errors, std::span<double> responses, std::vector<std::size_t>& left);
 
  private:
@@ -44,8 +46,8 @@ class ResponseSeries {
   struct Row {
     Form form = Form::itself;
     ChebyshevSeries series = {};
-    double precise = 0.0;   ///< permitted error of the response
-    double rounding = 0.0;  ///< error of the series by rounding, if its root is the response
+    double precise = 0.0;   ///< permitted error of the response, SI
+    double rounding = 0.0;  ///< rounding error of the series, if the response is the root of the series
   };
 
   bool form_row(std::size_t r, std::span<const double> solved);
@@ -55,11 +57,11 @@ class ResponseSeries {
   void take_root(const Row& row, std::span<double> values);
 
   std::vector<Response> responses_;
-  std::vector<double> least_;  ///< [R] rounding of each response
+  std::vector<double> least_;  ///< [responses] Model::rounding() of each response, SI
   double range_ = 0.0;
-  std::vector<Row> rows_;              ///< [R] series of each response
-  std::vector<double> x_;              ///< [B] errors over the range
-  std::vector<std::uint8_t> is_left_;  ///< [B] 1 where a root is not precise, or the error is beyond the range
+  std::vector<Row> rows_;              ///< [responses] series of each response
+  std::vector<double> x_;              ///< [errors] errors of the last evaluate(), divided by the range
+  std::vector<std::uint8_t> is_left_;  ///< [errors] 1 if beyond the range, or if a root is not precise; else 0
 };
 
 }  // namespace poesy

@@ -17,8 +17,8 @@
 
 namespace poesy {
 
-/// Returns true if a sample with this status counts in statistics. A sample that is singular, not finite, or cannot be
-/// assembled never counts.
+/// Returns true if a sample with this status counts in statistics. A sample that reached the iteration limit counts
+/// only with NotConverged::include; one that is singular, not finite or not assembled never counts.
 constexpr bool counts(SolveStatus status, NotConverged policy) {
   return solved(status) || (policy == NotConverged::include && usable(status));
 }
@@ -40,7 +40,7 @@ struct SolveCounts {
   std::uint64_t by_series() const { return by_status[static_cast<std::size_t>(SolveStatus::by_series)]; }
   /// Adds one sample.
   void add(SolveStatus status, std::uint32_t sample_iterations);
-  /// Adds other counts; the order does not matter.
+  /// Adds the counts of other samples; the order of merging does not matter.
   void merge(const SolveCounts& other);
 
   void state(Archive& archive);  ///< Reads or writes every count.
@@ -51,7 +51,7 @@ SolveCounts total_of(std::span<const SolveCounts> cells);
 
 /// A sample that was not solved.
 struct FailedSample {
-  SampleIndex sample;  ///< index of the sample among those of its cell (one error, or all together, at one pose)
+  SampleIndex sample;  ///< number of the sample, from 0, among those of its error (or of all errors) at its pose
   SolveStatus status;  ///< how its solve ended
 
   /// Returns true if both members are equal.
@@ -59,7 +59,7 @@ struct FailedSample {
 };
 
 /// The first unsolved samples of one cell (one error, or all errors together, at one pose), or of one unit (block of
-/// samples) of a cell. Memory is allocated only if a sample fails.
+/// samples) of a cell. No memory is allocated before a sample fails.
 class FailedSamples {
  public:
   /// The largest number of failures that are kept for a cell. The first failures are kept, so they do not depend on how
@@ -79,7 +79,7 @@ class FailedSamples {
   std::span<const FailedSample> first() const { return first_; }
 
   /// Reads or writes the failures. Throws BytesError if failures that are read do not fit the arguments: `failures`
-  /// samples have failed, all of them in [first, end). The arguments are ignored in writing.
+  /// samples have failed, all of them in [first, end). When writing, the arguments are ignored.
   void state(Archive& archive, std::uint64_t failures, std::uint64_t first, std::uint64_t end);
 
  private:
@@ -88,7 +88,7 @@ class FailedSamples {
 
 /// Says which sample was not solved, and how its solve ended.
 struct Failure {
-  std::size_t slot;     ///< index in the list of the study's factors; 0 if all vary together
+  std::size_t slot;     ///< index of the varied error in the list of the study's factors; 0 if all errors vary together
   PoseIndex pose;       ///< index in the list of the study's poses
   FailedSample failed;  ///< the sample, and how it ended
 
@@ -121,13 +121,13 @@ struct EstimateCourse {
 struct ConvergenceResult {
   std::size_t min = 0;          ///< least number of samples at each pose
   std::size_t max = 0;          ///< largest number of samples at each pose
-  double relative_error = 0.0;  ///< wanted half-width, as a share of |quantity|
+  double relative_error = 0.0;  ///< wanted half-width, divided by |quantity| (see EstimateCourse)
   /// The estimates, with half-widths, after each number of samples at which it was decided whether to continue
   /// (milestone). The last number may be `max`, where nothing has to be decided. NaN after the sampling of an error has
   /// ended.
   EstimateCourse course;
   std::vector<std::uint8_t> reached;  ///< [responses x slots] 1 if the half-width at the end is small enough, else 0
-  /// [responses x slots] half-width over |quantity| at the end; NaN for 0 / 0.
+  /// [responses x slots] half-width divided by |quantity| at the end; NaN for 0 / 0.
   std::vector<double> relative_half_width;
   std::vector<std::uint64_t> samples;  ///< [slots] number of samples at each pose while the errors of the slot vary
 };
@@ -140,8 +140,8 @@ struct LimitVerdict {
   /// otherwise a value. Infinite or NaN if too few samples were solved.
   double value = 0.0;
   bool passed = false;      ///< true if the limit is kept
-  std::uint64_t tried = 0;  ///< number of draws at all poses together; for an evaluation, number of rows
-  /// Number of draws or rows within the limit; a row counts if it is within the limit at each of its poses.
+  std::uint64_t tried = 0;  ///< number of draws at all poses; or of machines (Judge::yield); or of rows (evaluation)
+  /// Number of these draws, machines or rows that keep the limit (ValueLimit::keeps); an unsolved one does not.
   std::uint64_t within = 0;
   std::optional<std::size_t> pose = std::nullopt;  ///< pose at which `value` occurs, if it is the value at one pose
   std::optional<std::size_t> row = std::nullopt;   ///< row to which `value` belongs, for an evaluation
@@ -187,7 +187,7 @@ struct LimitVerdicts {
   bool passed() const;
 };
 
-/// Facts about one run, such as its time and its computer. They are not part of the result's content.
+/// Facts about one run, such as its time and its computer. The content hash of a result does not cover them.
 struct RunFacts {
   std::string created;              ///< time of creation, UTC, ISO 8601
   std::string host;                 ///< name of the computer of rank 0

@@ -19,7 +19,8 @@ namespace poesy {
 /// The numbers 0 .. count - 1.
 std::vector<std::size_t> all_positions(std::size_t count);
 
-/// The least number of samples at each pose. It is the same for every varied error of the plan (slot).
+/// The least number of samples at each pose: the first milestone, or the fixed number of samples. It is the same for
+/// every slot (see Rounds).
 std::size_t least_samples(const Plan& plan);
 
 /// The rounds of a sampled study. A slot is one error that varies alone, or all errors that vary together. A fixed
@@ -31,7 +32,7 @@ std::size_t least_samples(const Plan& plan);
 /// the milestone, so they are the same on any machine.
 class Rounds {
  public:
-  /// The rule that decides after each round whether an error (slot) needs more samples.
+  /// The rule that decides after each round whether a slot needs more samples.
   struct Rule {
     std::size_t responses;              ///< number of responses
     std::vector<std::size_t> deciding;  ///< indices of the responses that decide
@@ -43,34 +44,34 @@ class Rounds {
   /// Begins the first round. Keeps a reference to the plan.
   Rounds(const Plan& plan, Rule rule);
 
-  /// The number of samples at each pose at the end of this round, for one varied error or for all errors together
-  /// (slot).
+  /// The number of samples of a slot at each pose at the end of this round.
   std::size_t samples(std::size_t slot) const { return samples_[slot]; }
-  /// The number of work units of one error (slot) at each pose at the end of this round.
+  /// The number of work units of a slot at each pose at the end of this round.
   std::size_t units(std::size_t slot) const;
-  /// Returns true if `units` is a possible number of merged work units of one error (slot) at a pose in this round.
+  /// Returns true if `units` is a possible number of merged work units of a slot at a pose during this round.
   bool may_hold(std::size_t slot, std::size_t units) const;
   /// The expected number of solves of the whole study. It is computed from the half-widths so far, which decrease with
   /// the square root of the number of samples. It is at least the number of solves of this round. Before the first
   /// decision it is the largest possible number.
   std::uint64_t expected_solves() const;
-  /// The expected number of solves that are still to be done. With a fixed number of samples it is `pending`.
+  /// The expected number of solves that are still to be done in all rounds. done: solves so far. pending: the result if
+  /// the number of samples is fixed.
   std::uint64_t expected_left(const SolveCounts& done, std::uint64_t pending) const {
     return adaptive_ ? expected_solves() - done.total() : pending;
   }
 
-  /// Ends the round, and begins the next one if any varied error (slot) still needs samples. Returns true if a round
-  /// began. estimates(slot): the quantity of each response for this slot.
+  /// Ends the round, and begins the next one if any slot needs more samples. Returns true if a round began.
+  /// estimates(slot): the quantity of each response for this slot.
   bool go_on(const std::function<std::vector<Estimate>(std::size_t slot)>& estimates);
-  /// Tells how the sampling ended; empty for a fixed number of samples. Precondition: no round follows.
+  /// How the sampling ended; empty for a fixed number of samples. Precondition: all rounds have ended.
   std::optional<ConvergenceResult> result() const;
 
-  /// Reads or writes the decisions so far; nothing for a fixed number of samples. A state may be read that the same
-  /// plan with fewer samples wrote. Precondition of reading: this is the first round.
+  /// Reads or writes the decisions so far; nothing for a fixed number of samples. The state may come from the same plan
+  /// with fewer samples. Precondition of reading: this is the first round.
   void state(Archive& archive);
 
  private:
-  /// Quantities and half-widths at the end of one round: [responses x slots], a slot for each varied error.
+  /// Quantities and half-widths at the end of one round, [responses x slots]; NaN for a slot that had ended before.
   struct Row {
     std::vector<double> quantity;
     std::vector<double> half_width;
@@ -78,11 +79,12 @@ class Rounds {
 
   bool last_round() const { return rows_.size() == milestones_.size(); }
   std::size_t cell(std::size_t response, std::size_t slot) const { return response * samples_.size() + slot; }
-  /// The half-width of an estimate's interval divided by the largest half-width with which the sampling ends.
+  /// The half-width of an estimate's interval, divided by the largest half-width at which sampling ends; infinite if
+  /// not known.
   double excess(const Row& row, std::size_t cell) const;
   double largest_excess(const Row& row, std::size_t slot) const;
-  /// Ends the slots (varied errors) whose deciding responses are all known well enough, and begins the next round.
-  /// Returns true if a slot has not ended.
+  /// Ends each slot whose deciding responses are all known well enough, and begins the next round for the others.
+  /// Returns true if there are others.
   bool decide(Row row);
   std::size_t expected_samples(std::size_t slot) const;
   const Row& row_at_end(std::size_t slot) const;
@@ -93,12 +95,12 @@ class Rounds {
   std::size_t max_;
   std::vector<std::size_t> milestones_;  ///< numbers of samples after which the rounds decide
   std::vector<Row> rows_;                ///< estimates of the rounds that have ended
-  std::vector<std::size_t> samples_;     ///< [slots] number of samples of each error at a pose at the end of this round
-  std::vector<bool> ended_;              ///< [slots] true if the error needs no more samples
+  std::vector<std::size_t> samples_;     ///< [slots] number of samples at each pose at the end of this round
+  std::vector<bool> ended_;              ///< [slots] true if the slot needs no more samples
 };
 
-/// The units of a plan that are still to be solved, in the order of the plan. In each cell they are the units after
-/// those that are done, up to the wanted number.
+/// The units of a plan that are still to be solved, in the order of the plan. In each cell (one slot at one pose) these
+/// are the units after those that are done, up to the wanted number.
 class PendingUnits {
  public:
   /// done(cell), wanted(cell): the numbers of the cell's units that are done and that are wanted, at most
@@ -132,15 +134,15 @@ class PendingUnits {
   }
 
  private:
-  /// The end of a cell's units: how many units are to be solved in all cells up to this one, and the number of the
-  /// wanted units of this cell.
+  /// pending: number of units to be solved in all cells up to and including this one. unit: number of wanted units of
+  /// this cell.
   struct End {
     std::size_t pending;
     std::size_t unit;
   };
 
   const Plan* plan_;
-  std::vector<End> ends_;  ///< [cells] end of each cell
+  std::vector<End> ends_;  ///< [cells] see End
   std::uint64_t samples_ = 0;
 };
 

@@ -38,8 +38,8 @@ inline void publish() {}
 inline void receive() {}
 #endif
 
-/// Makes the writes during one Block visible to each Block that begins after its end. Used around objects of oneTBB,
-/// because their memory moves from thread to thread inside the allocator of oneTBB.
+/// Tells the sanitizer that all writes while one Block exists are visible to each Block that begins after its end. Code
+/// with objects of oneTBB needs this, because their memory moves from thread to thread inside the allocator of oneTBB.
 class Block {
  public:
   Block() { receive(); }
@@ -48,8 +48,8 @@ class Block {
   Block& operator=(const Block&) = delete;
 };
 
-/// An object whose destructor tells the sanitizer that all earlier Blocks have ended, whether the function returns or
-/// throws.
+/// The destructor tells the sanitizer that all earlier Blocks have ended. It does so whether the function with this
+/// object returns or throws.
 class Waiting {
  public:
   Waiting() = default;
@@ -63,7 +63,7 @@ class Waiting {
 template <class Function>
 class Task {
  public:
-  /// The function is copied with the task.
+  /// A copy of the task copies the function.
   explicit Task(Function function) : function_(std::move(function)) {}
   /// A copy may run on another thread, where the writes of this thread must be visible.
   Task(const Task& other) : function_(other.function_) { publish(); }
@@ -98,7 +98,8 @@ struct Pool {
 /// Makes oneTBB start its threads now, while there is memory for them. Waits until all threads have started, for at
 /// most 20 ms.
 #ifdef POESY_THREAD_SANITIZER
-// The sanitizer does not see the order of the tasks of parallel_for, whose nodes are on this thread's stack.
+// Does nothing: the sanitizer would report races, because it does not see in which order oneTBB runs the tasks of
+// parallel_for.
 void start_workers(std::size_t /*threads*/) {}
 #else
 void start_workers(std::size_t threads) {
@@ -136,7 +137,8 @@ void run_in_slots(const TicketSource& source, const RunOptions& options, const s
   const std::size_t threads = resolved_threads(options.threads);
   start_threads(threads);
   Pool pool(threads);
-  // The lambda is called in place: a copy in memory of oneTBB would also move from thread to thread.
+  // The lambda refers to make_work instead of copying it: the copy would be in memory of oneTBB, which moves from
+  // thread to thread.
   tbb::enumerable_thread_specific<SlotJob> works([&make_work] { return make_work(); });
   const handover::Task start([&](tbb::flow_control& control) -> Ticket {
     if (const auto ticket = source()) return *ticket;
@@ -158,8 +160,8 @@ void run_in_slots(const TicketSource& source, const RunOptions& options, const s
 }
 
 bool run_alone(std::size_t count, const RunOptions& options, const SlotWork& work) {
-  // The pipeline finishes in order, and at most `slots` pieces are in progress. So no two of them share a place for
-  // their output (slot).
+  // The pipeline finishes pieces in order, and at most `slots` pieces are in progress, so no two of them share a slot
+  // (place for an output).
   const std::size_t slots = pool_slots(options);
   std::size_t next = 0;
   std::size_t finished = 0;

@@ -23,7 +23,8 @@ struct Ticket {
   std::size_t slot;  ///< place for its output
 };
 
-/// A function that returns one ticket after another, and none after the last. Never called from two threads at once.
+/// A function that returns one ticket after another, and none after the last. It is never called from two threads at
+/// once.
 using TicketSource = std::function<std::optional<Ticket>()>;
 
 /// The number of places for outputs (slots) that run_in_slots() uses: a few for each thread.
@@ -39,13 +40,13 @@ void run_in_slots(const TicketSource& source, const RunOptions& options, const s
 /// progress.
 struct SlotWork {
   std::function<SlotJob()> make_work;  ///< makes a function that does pieces of work, see run_in_slots()
-  SlotJob finish;                      ///< called on rank 0 in the order of n; afterwards the slot is free
-  /// Reads or writes the output of piece n in its place (slot), as ranks send it. The place is empty before reading.
+  SlotJob finish;                      ///< merges an output: called on rank 0 in the order of n; then the slot is free
+  /// Writes the output of piece n from its slot as a message to rank 0, or reads such a message into an empty slot.
   std::function<void(std::size_t n, std::size_t slot, Archive& archive)> state;
 };
 
 /// Calls work(n, slot) and finish(n, slot) for each piece n = 0 .. count - 1 in this process alone, with pool_slots()
-/// places for outputs. Returns false when stopped.
+/// places for outputs. Returns false if the run was stopped.
 bool run_alone(std::size_t count, const RunOptions& options, const SlotWork& work);
 
 /// The number of places for outputs (slots) that run_over_ranks() uses on this rank.
@@ -54,8 +55,8 @@ std::size_t rank_slots(const RunOptions& options);
 /// Runs one stage on all ranks of options.team: work(n, slot) for each piece n = 0 .. count - 1 on any rank, and
 /// finish(n, slot) on rank 0 in the order of n. Rank 0 hands out ranges of pieces as outputs return, and works on some
 /// of them itself. The calling thread exchanges messages and calls finish(), while a pool of threads works. On the
-/// other ranks the function returns when rank 0 has ended the stage. Returns true if the stage is complete; on rank 0
-/// it is not complete if a rank has left. Throws exceptions of this rank, and Dismissed.
+/// other ranks the function returns when rank 0 has ended the stage. Returns true if the stage is complete; it is not
+/// if the run was stopped or a rank has left. Throws the exceptions of the work on this rank, and Dismissed.
 bool run_over_ranks(std::size_t count, const RunOptions& options, const SlotWork& work);
 
 }  // namespace poesy

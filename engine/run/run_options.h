@@ -16,21 +16,21 @@ namespace poesy {
 struct Progress {
   std::uint64_t solves = 0;  ///< samples that are done, including those of the earlier run that this run continues
   std::uint64_t total = 0;   ///< expected number of all samples
-  std::uint64_t not_converged = 0;  ///< samples that were done and did not converge
+  std::uint64_t not_converged = 0;  ///< samples that are done but whose solves did not converge
   std::uint64_t before = 0;         ///< samples of the earlier run that this run continues
 };
 
-/// How a run is done. No option changes a bit of the result.
+/// How a run is done. No option changes the content of a result file.
 struct RunOptions {
   std::size_t threads = 0;  ///< number of threads; 0: one per processor
   /// A function that shows the progress. It is called from time to time, never from two threads at once. May be empty.
   std::function<void(const Progress&)> progress = {};
   /// A flag that another thread or a signal handler sets to stop the run soon. May be null.
   const std::atomic<bool>* stop = nullptr;
-  /// Where the run gets and saves its state. May be null. With checkpoints, a run function throws BytesError for a
-  /// state that it did not write.
+  /// Where the run gets its earlier state and saves its state; may be null. If another program or study wrote the
+  /// earlier state, the run throws BytesError.
   Checkpoints* checkpoints = nullptr;
-  /// The shard to run instead of the whole study. A shard gives no result; its state goes to the checkpoints.
+  /// The shard to run instead of the whole study. Its run returns no result: its state is in `checkpoints`.
   std::optional<Shard> shard = std::nullopt;
   /// True if a longer study may continue from the last checkpoint. A study that draws all errors together then keeps
   /// more data.
@@ -39,15 +39,16 @@ struct RunOptions {
   bool keep_rejected = false;
   /// The ranks that share the work; null: this process alone. Every rank calls the same run functions with the same
   /// arguments and gets the same results; only rank 0 has checkpoints and reports progress. If a rank is stopped or
-  /// leaves, the functions return nothing, and team->left() says why. The ranks after rank 0 may throw Dismissed.
+  /// leaves, the functions return nothing, and team->left() says why. Functions on ranks other than rank 0 may throw
+  /// Dismissed.
   Team* team = nullptr;
 };
 
 /// The number of threads to use: `threads`, or the number of processors if that is 0.
 std::size_t resolved_threads(std::size_t threads);
 
-/// Starts `threads` threads of the pool, unless they exist. Call it early, while there is memory and no result that
-/// could be lost, because oneTBB ends the program if it cannot start a thread. Throws FileError if this process cannot
+/// Starts threads of the pool until it has `threads` of them. Call this function early, while there is memory and no
+/// result to lose, because oneTBB ends the program if it cannot start a thread. Throws FileError if this process cannot
 /// have so many threads.
 void start_threads(std::size_t threads);
 

@@ -12,7 +12,8 @@
 namespace poesy {
 namespace {
 
-/// The cell of a block of samples: all that determines its series.
+/// Everything that determines the series of a block of samples: its varied error and range, its pose and previous pose,
+/// and its constant errors.
 struct SeriesCell {
   FactorIndex factor;
   double range;
@@ -52,15 +53,15 @@ class SeriesEvaluator final : public Evaluator {
   }
 
  private:
-  /// Outcomes of solves at a few errors, such as the nodes of the series.
+  /// Outcomes of solves at a few values of the varied error, such as the nodes of the series.
   struct Solved {
     std::vector<double> responses;
     std::vector<SolveStatus> status;
     std::vector<std::uint32_t> iterations;
   };
 
-  /// Solves these errors instead of those of the block. The solver is not told the range, because so few samples do not
-  /// repay its preparations for a range.
+  /// Solves the block with these values of the varied error instead of its own. The range is not passed on: the solver
+  /// would prepare for it, which is too slow for so few samples.
   Solved solve(SampleBlock samples, std::span<const double> errors) {
     samples.values = errors;
     samples.count = errors.size();
@@ -95,8 +96,8 @@ class SeriesEvaluator final : public Evaluator {
 
   std::unique_ptr<Evaluator> solver_;
   std::size_t responses_;
-  ResponseSeries series_;           ///< series of the cell, if they are certified
-  std::optional<SeriesCell> cell_;  ///< cell of the last block; none before the first
+  ResponseSeries series_;           ///< series for `cell_`; usable only if is_certified_
+  std::optional<SeriesCell> cell_;  ///< what determined the series of the last block; none before the first block
   bool is_certified_ = false;
   std::vector<std::size_t> left_;  ///< samples of the block that are solved one by one
 };

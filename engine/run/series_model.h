@@ -6,10 +6,11 @@
 
 namespace poesy {
 
-/// A model like this one whose evaluator replaces solves by certified series where one error varies over a known range
-/// (SampleBlock::range). It solves the model at Chebyshev nodes over the range, and forms a series for each response
-/// (D230). Further solves at fixed errors are the certificate: there the series must give the same responses. A sample
-/// by series has the status SolveStatus::by_series and no iterations. These samples are solved one by one:
+/// Wraps a model: if one error varies over a known range (SampleBlock::range), the evaluator replaces solves by
+/// certified series. It solves the model at Chebyshev nodes over the range, and forms a series for each response
+/// (engine/docs/decisions/0230-certified-series.md). The certificate is a few further solves, at which the series must
+/// give the same responses. A sample by series has the status SolveStatus::by_series and no iterations. These samples
+/// are solved one by one:
 ///
 /// - all samples of a pose and error, if a solve at a node or for the certificate does not converge, a series does not
 ///   converge, or the certificate fails;

@@ -15,13 +15,13 @@ struct NumberRange {
 };
 
 /// One of several shards into which a study is divided. A shard has consecutive cells of the plan (a cell is a varied
-/// error at a pose). If the study has no cells, the shard has consecutive blocks of machines or of rows. All shards are
-/// as equal in size as possible.
+/// error at a pose), or consecutive blocks of machines or rows in a study without cells. All shards have the same size,
+/// up to one cell or block.
 struct Shard {
   std::size_t index = 0;  ///< number of the shard, from 0
   std::size_t count = 1;  ///< number of all shards
 
-  /// The numbers among 0 .. all - 1 that belong to this shard. Each shard begins where the previous one ends.
+  /// The range of the numbers 0 .. all - 1 that belongs to this shard. Each shard begins where the previous one ends.
   NumberRange of(std::size_t all) const { return {begin(index, all), begin(index + 1, all)}; }
 
  private:
@@ -31,7 +31,7 @@ struct Shard {
   }
 };
 
-/// The shard as text: "2/5".
+/// The shard as text, with numbers from 1: "2/5" for index 1 of 5 shards.
 inline std::string to_string(const Shard& shard) {
   return std::to_string(shard.index + 1) + "/" + std::to_string(shard.count);
 }

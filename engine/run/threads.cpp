@@ -55,7 +55,7 @@ class WaitingThreads {
   std::atomic<bool> over_{false};
 };
 
-/// 0 if `threads` threads can exist at once; otherwise the errno of the failure.
+/// 0 if `threads` threads can exist at once with memory for their work; otherwise the errno of the failure.
 int problem_of(std::size_t threads) {
   constexpr std::size_t kRoom = std::size_t{2} << 20U;
   constexpr std::size_t kRoomOfThread = std::size_t{1} << 18U;

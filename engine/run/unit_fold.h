@@ -14,8 +14,8 @@
 
 namespace poesy {
 
-/// Jobs whose units are blocks of samples. Rounds of adaptive samples may add units to such jobs, and a longer study
-/// can continue a shorter one.
+/// A job whose units are blocks of samples. Its number of samples may be adaptive (Rounds), and a study with more
+/// samples can continue one with fewer.
 template <class Job>
 concept SampledUnits = requires(const Job& job) {
   job.rounds();
@@ -24,27 +24,27 @@ concept SampledUnits = requires(const Job& job) {
 /// The work of fold() for a sequence of units, which are solved on any thread and merged in order. UnitFold manages the
 /// pending units, shards, and states. A job is a type with everything else:
 ///
-///     static constexpr std::string_view kName       name of its states, unique among all jobs
-///     std::vector<std::uint64_t> sizes() const      sizes that a state must have to be read
-///     NumberRange units(const Shard&) const         the shard's part of all units, 0 .. N - 1
-///     std::uint64_t expected(std::size_t n) const   solves of unit n, as far as known beforehand
+///     static constexpr std::string_view kName       name in the states, unique among all jobs
+///     std::vector<std::uint64_t> sizes() const      numbers that must be the same in a state to be read
+///     NumberRange units(const Shard&) const         the units of a shard, numbered from 0 over all shards
+///     std::uint64_t expected(std::size_t n) const   expected number of solves of unit n
 ///     Worker worker() const                         owns the scratch of one thread: worker(n) solves unit n
-///     Unit unit(std::size_t n) const                an empty unit, with state(Archive&); not needed if units are Sums
+///     Unit unit(std::size_t n) const                an empty unit, with state(Archive&); not needed if Unit is Sums
 ///     SolveCounts solves(std::size_t n, const Unit&) const   how a unit's solves ended
 ///     Sums sums() const                             empty sums
 ///
 /// The sums have add(std::size_t n, Unit&&), which adds the next unit, and state(Archive&, const NumberRange& units),
-/// which writes the sums of these units, or reads and adds them. A unit may have the type Sums: then a state is read
-/// like a unit, and added. A job whose units are samples also has:
+/// which writes the sums of these units, or reads and adds them. The type of a unit may be Sums; a state is then read
+/// as a Sums object, which is added like a unit. A job whose units are blocks of samples also has:
 ///
-///     Rounds rounds() const                         the rounds at their beginning
+///     Rounds rounds() const                         the rule for rounds, at the first round
 ///     std::size_t samples() const                   samples of the whole study
 ///     std::size_t units_for(std::size_t samples) const   number of units for these samples
-///     bool is_whole(std::size_t n) const            whether unit n is as large as in any longer study
+///     bool is_whole(std::size_t n) const            true if more samples would not make unit n larger
 ///     std::vector<Estimate> estimates(const Sums&, const Unit* last) const   estimates that decide after a round
 ///
-/// If the last unit is not whole (smaller than in a longer study), its sums are kept separate until the end. A longer
-/// study continues without that unit.
+/// If the last unit is not whole, because a study with more samples has a larger unit in its place, its sums are kept
+/// separate until the end. A study with more samples continues without that unit.
 template <class Job>
 class UnitFold {
  public:
@@ -52,7 +52,7 @@ class UnitFold {
   using Worker = decltype(std::declval<const Job&>().worker());  ///< The type of the worker of one thread.
   using Unit = std::invoke_result_t<Worker&, std::size_t>;       ///< The type of the output of a unit.
 
-  /// Works on the shard of the options, if they have one. Keeps a reference to the job.
+  /// Does the units of options.shard, or all units without a shard. Keeps a reference to the job.
   UnitFold(const Job& job, const RunOptions& options)
       : job_(job), units_(job.units(options.shard.value_or(Shard()))), sums_(job.sums()) {
     clear();
@@ -108,16 +108,16 @@ class UnitFold {
   }
   /// @}
 
-  /// The sums of all units that were solved. Precondition: no round follows.
+  /// The sums of all units that were merged. Precondition: all rounds have ended.
   Sums sums() && {
     if (last_) sums_.add(next_ - 1, *std::exchange(last_, std::nullopt));
     return std::move(sums_);
   }
-  /// Tells how the adaptive sampling ended; empty if the number of samples was fixed. Precondition: no round follows.
+  /// How the adaptive sampling ended; empty if the number of samples was fixed. Precondition: all rounds have ended.
   std::optional<ConvergenceResult> convergence() const { return rounds_ ? rounds_->result() : std::nullopt; }
 
  private:
-  /// Resets all sums.
+  /// Removes all sums, and goes back to the first round.
   void clear() {
     sums_ = job_.sums();
     next_ = units_.first;
@@ -144,8 +144,8 @@ class UnitFold {
     }
   }
 
-  /// Reads or writes the sums of all units that were merged. A state that was merged from shards has the sums of one
-  /// shard after the other; each call reads those of one shard.
+  /// Writes the sums of all units, or reads the sums of one shard. A state that was merged from several shards has
+  /// their sums one after the other.
   void part_state(Archive& archive) {
     head_state(archive, Job::kName, job_.sizes());
     NumberRange units{archive.reads() ? next_ : units_.first, last_ ? next_ - 1 : next_};
@@ -171,8 +171,8 @@ class UnitFold {
     }
     sums_.state(archive, units);
   }
-  /// Reads or writes the sums of a last unit that is not whole. They are separate, because in a longer study another
-  /// unit takes its place.
+  /// Reads or writes the sums of a last unit that is not whole. They are separate, because a study with more samples
+  /// leaves them out.
   void last_state(Archive& archive) {
     std::size_t samples = job_.samples();
     archive.number(samples, job_.samples());
@@ -193,8 +193,8 @@ class UnitFold {
   std::size_t next_ = 0;
   std::size_t begun_ = 0;  ///< number of the round's first unit
   std::size_t end_ = 0;    ///< number of the round's last unit, plus 1
-  Sums sums_;              ///< sums of whole units
-  SolveCounts solved_;     ///< solves of whole units
+  Sums sums_;              ///< sums of the units that are whole (see UnitFold)
+  SolveCounts solved_;     ///< solves of the units that are whole
   std::optional<Unit> last_;
   std::optional<Rounds> rounds_;
 };

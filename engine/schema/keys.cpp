@@ -21,7 +21,8 @@ bool stands_for_names(std::string_view name) {
 
 bool is_name_of_model(const StudyKey& key) { return stands_for_names(key.name); }
 
-/// Returns true if a path matches the path of a described table, name by name. Placeholders match every name.
+/// Returns true if a path matches the path of a described table, name by name. A placeholder (a name in capitals)
+/// matches every name.
 bool fits(std::string_view described, std::string_view path) {
   const auto first_name = [](std::string_view rest) { return rest.substr(0, rest.find('.')); };
   const std::string_view pattern = first_name(described);
@@ -60,7 +61,8 @@ std::string paragraph(std::string_view text, std::size_t indent) {
   return out;
 }
 
-/// The explanation of a key as comment lines, followed by the words that the key accepts, indented further.
+/// The explanation of a key as comment lines, indented by 2 x depth columns. The words that the key accepts follow,
+/// indented by two more columns.
 std::string key_lines(const StudyTable& table, const StudyKey& key, std::size_t depth) {
   std::string text = paragraph(fmt::format("{}: {}", key.name, explanation(table, key)), 2 * depth);
   for (const StudyWord& word : key.words) {
@@ -69,7 +71,7 @@ std::string key_lines(const StudyTable& table, const StudyKey& key, std::size_t 
   return text;
 }
 
-/// The value that a template shows for a key: the default if that is a value (in backquotes), otherwise the example.
+/// The value that a template shows for a key: the default if it is a value (in backquotes), otherwise the example.
 std::string shown_value(const StudyKey& key) {
   if (!key.usual.starts_with('`')) return key.example;
   return key.usual.substr(1, key.usual.find('`', 1) - 1);
@@ -90,7 +92,7 @@ std::string heading(const StudyTable& table) {
   return fmt::format("`[{}]`", fmt::join(table.paths, "]`, `["));
 }
 
-/// Says, as Markdown, for which words of the table's chooser the key applies.
+/// Markdown text that lists the words of the table's chooser with which the key applies.
 std::string holds_text(const StudyKey& key) {
   if (key.only_for.empty()) return "all";
   return fmt::format("`{}`{}", fmt::join(key.only_for, "`, `"), key.may_stay ? "; else ignored" : "");

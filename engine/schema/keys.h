@@ -11,10 +11,10 @@
 #include "engine/base/text.h"
 #include "engine/schema/keys_section.h"
 
-/// A key of a file is described by one typed object (a Key, which is a row of a table Keys): its name, the member that
-/// it sets, its bounds and its meaning. The functions that read files, write the resolved text (a study with every
-/// default filled in), and make templates and the reference all use these descriptions. A key's default is the value in
-/// a default-constructed object.
+/// Each key of a study or mechanism file is described by one typed object, a Key, which is a row of a table Keys. It
+/// states the name of the key, the member that the key sets, its bounds and its meaning. The functions that read files,
+/// write the resolved text (a study with every default filled in), and make templates and the reference all use these
+/// descriptions. A key's default is the value in a default-constructed object.
 
 namespace poesy {
 
@@ -24,44 +24,43 @@ struct StudyWord {
   std::string_view meaning;  ///< what the word means, as a clause
 };
 
-/// The description of a key for messages, templates and the reference.
+/// The description of a key, from which messages, templates and the reference of study files are made.
 struct StudyKey {
-  std::string_view name;              ///< name of the key; capitals stand for names that the model gives: "FACTOR"
-  std::string type;                   ///< type of the value: "integer", "length", "list of numbers", ...
-  std::string bounds = {};            ///< bounds of the value: "at least 1"; empty if the type has no further bounds
+  std::string_view name;    ///< name of the key; in capitals ("FACTOR"), a placeholder for names that the model gives
+  std::string type;         ///< type of the value: "integer", "length", "list of numbers", ...
+  std::string bounds = {};  ///< bounds of the value: "at least 1"; empty if the type has no further bounds
   std::vector<StudyWord> words = {};  ///< words that the key accepts; empty if it accepts other values
   bool required = false;              ///< true if the key is required where it applies
   /// Advice to a user who leaves out a required key; may be empty.
   std::string missing = {};
-  std::string usual = {};    ///< default: a value in backquotes, or a clause that describes it
+  std::string usual = {};    ///< default: a value in backquotes, or a description in words
   std::string example = {};  ///< example of a value in TOML that is not the default
   std::vector<std::string_view> only_for =
-      {};                    ///< values of StudyTable::chooser with which the key applies; empty: all
-  bool may_stay = false;     ///< true: with other values the key is ignored; false: it is refused
+      {};                    ///< words of the chooser (see StudyTable) with which the key applies; empty: all
+  bool may_stay = false;     ///< what happens to the key with other words: true: it is ignored; false: it is refused
   std::string_view meaning;  ///< what the key means, as a sentence
 };
 
 /// The description of a table of a study file, or of several tables with the same keys.
 struct StudyTable {
   /// Paths of the tables: "analysis.cases", with '.' between names and without the numbers of lists. The path of the
-  /// file itself is empty. "analysis.groups[]" means only the elements of a list, because there may also be a table
-  /// "analysis.groups".
+  /// file itself is empty. "analysis.groups[]" means the elements of a list, in contrast to a table "analysis.groups".
   std::vector<std::string_view> paths;
   std::string_view meaning;  ///< what the table is for, as a sentence
-  /// The key whose value (a word) selects which other keys of the table apply; empty: all apply.
+  /// Name of the chooser: the key whose word selects which other keys of the table apply. Empty: all keys apply.
   std::string_view chooser = {};
-  std::string_view owner = {};  ///< how messages name the chooser: "select ="
+  std::string_view owner = {};  ///< text before the chooser's word in messages: "the distribution"; empty: "CHOOSER ="
   std::vector<StudyKey> keys;   ///< the keys, in the order in which they are listed
 
-  /// The key of this name; null if there is none. Several keys may have the same name if each applies with other values
-  /// of `chooser`. In this case the result is the key that applies with the value `word`, or the first key of this name
-  /// if there is none.
+  /// The key of this name; null if the table has none. Several keys may have the same name if they apply with different
+  /// words of the chooser. The result is then the one that applies with `word`, or the first one if none does.
   const StudyKey* find(std::string_view key, std::string_view word = {}) const;
   std::vector<std::string_view> names() const;  ///< The names of the keys, in order.
-  bool has_names_of_model() const;  ///< Returns true if the table has a placeholder for names that the model gives.
-  /// The setting to which a key belongs, for messages that the key does not apply for this word: `select = "grid"`.
+  bool has_names_of_model() const;              ///< Returns true if a key is a placeholder.
+  /// The setting of the chooser as messages name it, for a key that does not apply with this word: `select = "grid"`.
   std::string owner_of(std::string_view word) const;
-  /// The advice for a user who leaves the key out. A name that the model gives has the advice of its placeholder.
+  /// The advice to a user who leaves the key out. A key that is not described is a name that the model gives; it has
+  /// the advice of the table's placeholder.
   std::string remedy(std::string_view key) const;
 };
 
@@ -69,7 +68,7 @@ struct StudyTable {
 /// elements of lists have numbers: "errors.override.delta_1", "analysis.groups[0]".
 const StudyTable* find_table(const StudyTables& tables, std::string_view path);
 
-/// Returns true if a key with this list StudyKey::only_for applies when `chooser` has this value.
+/// Returns true if a key with this list StudyKey::only_for applies when the chooser has this word.
 bool holds_for(std::span<const std::string_view> only_for, std::string_view word);
 
 /// The explanation of a key as plain text: its meaning and bounds, when it applies or is required, and its default.
@@ -80,22 +79,22 @@ std::string tables_reference(const StudyTables& tables);
 
 std::string comment(std::string_view text);  ///< Text of any number of lines as comment lines of TOML.
 
-/// Makes lines of a template, which is a study file with explanations that a user edits. Each text that it returns
-/// consists of whole lines of TOML. Precondition: the tables and keys exist.
+/// Makes lines of a template: a study file with explanations, which a user edits. The functions return whole lines of
+/// TOML, except inline_table(), example() and meaning(). Precondition: the tables and keys exist.
 class TemplateLines {
  public:
-  /// tables: must outlive this object. word: the value of `chooser`, which selects among keys of the same name.
+  /// tables: must outlive this object. word: the word of the chooser, which selects among keys of the same name.
   explicit TemplateLines(const StudyTables& tables, std::string_view word = {}) : tables_(&tables), word_(word) {}
 
-  /// The given line, which sets this key, with the key's explanation. The explanation follows the line if there is
-  /// room. Otherwise it precedes the line as comment lines, with the words that the key accepts.
+  /// The given line, which sets this key, with the key's explanation: at the end of the line if there is room and the
+  /// key has no words, otherwise in comment lines before it, followed by the words that the key accepts.
   std::string explained(std::string_view table, std::string_view key, std::string_view line) const;
-  /// A line "KEY = VALUE" with the explanation, as explained() makes it. The value is the key's default if the
-  /// description states it as a value, otherwise the key's example. sign: text in front of the line.
+  /// A line "KEY = VALUE" with its explanation, made by explained(). The value is the key's default if the description
+  /// states a value, otherwise the key's example. sign: text before the key, such as "# ".
   std::string usual(std::string_view table, std::string_view key, std::string_view sign = "") const;
   /// "KEY: explanation" as comment lines, followed by the words that the key accepts with their meanings.
   std::string explanation_lines(std::string_view table, std::string_view key) const;
-  /// The explanation_lines() of every key of an inline table, indented `depth` steps further.
+  /// The explanation_lines() of every key of a table, indented by 2 x depth columns.
   std::string keys_lines(std::string_view table, std::size_t depth = 1) const;
   /// An inline table of the keys whose default or example is a value, in TOML: "{ min = 1000, max = 1000000 }".
   std::string inline_table(std::string_view table) const;
@@ -117,8 +116,8 @@ std::string in_quotes(std::string_view text);  ///< A text as a TOML string, in 
 /// bare number.
 std::string exact_value(double si, Dimension dimension);
 
-/// A value (SI) as TOML text in the unit that results show, if this text is as exact and shorter: "60 mm" instead of
-/// "0.06 m". Otherwise exact_value().
+/// A value (SI) as TOML text in the unit that results show, if this text is as exact and at most one character longer
+/// than exact_value(): "60 mm" instead of "0.06 m". Otherwise exact_value().
 std::string readable_value(double si, Dimension dimension);
 
 /// A function like exact_value() or readable_value().
@@ -126,7 +125,8 @@ using ValueText = std::string (*)(double si, Dimension dimension);
 
 std::string list_text(std::span<const std::string> values);  ///< Values as a TOML list: "[a, b]".
 
-/// Named things as a TOML inline table, "{ a = 1, b = 2 }". value(k): the text of the k-th thing.
+/// Things with a member `name` as a TOML inline table, "{ a = 1, b = 2 }". value(k): the value of the k-th thing as
+/// TOML.
 template <class Named, class Value>
 std::string inline_table(const std::vector<Named>& things, Value value) {
   std::string text;
@@ -137,7 +137,7 @@ std::string inline_table(const std::vector<Named>& things, Value value) {
 }
 
 /// Calls read(k, value) for each thing whose name is a key of the section, in the order of the things; k is the index
-/// of the thing. Throws InputError for other keys. what: what the keys name, for messages.
+/// of the thing. Throws InputError for a key that names no thing. what: noun for a thing in messages, such as "joint".
 template <class Named, class Read>
 void read_named(const StudySection& section, const std::vector<Named>& things, std::string_view what, Read read) {
   section.allow(names(things), what);
@@ -161,7 +161,7 @@ NumberBounds above_one(std::string_view example);   ///< Bounds of a number grea
 /// Bounds of a number between 0 and 1, both excluded; a percentage is allowed.
 NumberBounds between_0_and_1(std::string_view example);
 
-/// Reads a number within the bounds. Throws InputError at the value's place for a number outside.
+/// Reads a number within the bounds. Throws InputError at the value's place if the number is outside.
 double read_number(const StudyValue& value, const NumberBounds& bounds);
 
 /// Describes how the value of a key is read into an object and written from it, and which values a file may have.
@@ -170,39 +170,39 @@ struct KeyValue {
   std::string type;                   ///< type for users: "integer", "length", "list of numbers", ...
   std::string bounds = {};            ///< bounds for users: "at least 1"; empty if the type has no further bounds
   std::vector<StudyWord> words = {};  ///< words that the key accepts; empty if it accepts other values
-  /// Stores the value; none if the key has a reader (Key::reader).
+  /// Stores the value in the object; none if Key::reader does so instead.
   std::function<void(const StudyValue&, Object&)> read = {};
-  /// Value as TOML; none if the key writes its own lines (Key::lines), or no line.
+  /// Returns the value as TOML; none if Key::lines writes the lines of the key, or if it has no line.
   std::function<std::string(const Object&)> text = {};
 };
 
 /// One key of a table (a row of Keys): its description, and the functions that read its value into an Object and write
-/// it. Scope: what a reader needs besides the value, such as the model.
+/// it. Scope: type of the data that a reader needs in addition to the value, such as the model.
 template <class Object, class Scope>
 struct Key {
-  std::string_view name;   ///< name of the key; capitals stand for names that the model gives: "FACTOR"
-  KeyValue<Object> value;  ///< type, bounds, words, and how it is read and written
+  std::string_view name;   ///< name of the key; in capitals ("FACTOR"), a placeholder for names that the model gives
+  KeyValue<Object> value;  ///< type, bounds and words of the value, and how it is read and written
   /// Advice to a user who leaves the key out, with "{}" in place of the example; if the advice is not empty, the key is
   /// required.
   std::string missing = {};
-  bool required = false;  ///< true if a rule elsewhere requires the key
-  /// The default in words, if it is not the value of a default-constructed object. An empty text means that there is no
-  /// default.
+  bool required = false;  ///< true if the key is required by code outside read_keys()
+  /// The default in words; none: the value of a default-constructed object is the default. An empty text means that
+  /// there is no default.
   std::optional<std::string> usual = {};
-  std::string besides = {};  ///< remark after the default, or after "required"
+  std::string besides = {};  ///< remark that follows the default, or the word "required", in descriptions
   std::string example = {};  ///< example of a value in TOML that is not the default
   std::vector<std::string_view> only_for =
-      {};                    ///< values of StudyTable::chooser with which the key applies; empty: all
-  bool may_stay = false;     ///< true: with other values the key is ignored; false: it is refused
+      {};                    ///< words of the chooser (see StudyTable) with which the key applies; empty: all
+  bool may_stay = false;     ///< what happens to the key with other words: true: it is ignored; false: it is refused
   std::string_view meaning;  ///< what the key means, as a sentence
   /// Reads the value if its meaning depends on the model, on files or on other keys; replaces KeyValue::read.
   void (*reader)(const StudyValue& value, Object& object, const Scope& scope) = nullptr;
-  /// Writes the key's lines of the resolved text, if they are not just "KEY = VALUE". The text may be empty.
+  /// Writes the key's lines of the resolved text, which may be empty; null: the line is "KEY = VALUE".
   std::string (*lines)(const Object& object) = nullptr;
   int late = 0;  ///< order in the resolved text: keys with a larger number come later
-  /// Writes the key's lines of a template for this object, if they do not just show the default. The text may be empty.
+  /// Writes the key's lines of a template for this object, which may be empty; null: the template shows the default.
   std::string (*shown)(const TemplateLines& lines, const Object& object) = nullptr;
-  bool commented = false;  ///< true if a template shows the default as a comment
+  bool commented = false;  ///< true if a template shows the default in a comment line
 };
 
 /// A table of keys with their values. described() makes a StudyTable of it.
@@ -211,9 +211,10 @@ struct Keys {
   /// Paths of the table in a file: "analysis.cases"; empty for the file itself.
   std::vector<std::string_view> paths = {};
   std::string_view meaning = {};  ///< what the table is for, as a sentence
-  /// Key whose word determines which other keys of the table apply, the first of `rows`; empty: all apply.
+  /// Name of the chooser: the key whose word selects which other keys apply. It is the first of `rows`. Empty: all keys
+  /// apply.
   std::string_view chooser = {};
-  std::string_view owner = {};           ///< how messages name the chooser: "select ="
+  std::string_view owner = {};  ///< text before the chooser's word in messages: "the distribution"; empty: "CHOOSER ="
   std::vector<Key<Object, Scope>> rows;  ///< keys, in the order in which they are listed and read
 };
 
@@ -232,7 +233,7 @@ auto& at(Object& object, Member member, Rest... rest) {
 template <class Class, class Type, class... Rest>
 Class owner_of(Type Class::*, Rest...);
 
-/// Removes the plus of exponents and their leading zeros: "1e-15", and "1e8" for 1e+08.
+/// Removes the plus sign and leading zeros of a positive exponent: "1e8" for "1e+08". Other texts stay as they are.
 std::string without_plus(std::string text);
 
 /// The value of a default-constructed object in backquotes, as the reference shows it.
@@ -243,7 +244,7 @@ std::string usual_text(const KeyValue<Object>& value) {
 
 }  // namespace detail
 
-/// The type of object to which the first of these pointers to members belongs.
+/// The class to which the first of these pointers to members belongs.
 template <class... Path>
 using OwnerOf = decltype(detail::owner_of(Path()...));
 
@@ -333,7 +334,7 @@ StudyTable described(const Keys<Object, Scope>& keys) {
   return table;
 }
 
-/// The word that an object has for the table's chooser; empty if the table has no chooser.
+/// The word of the table's chooser in this object; empty if the table has no chooser.
 template <class Object, class Scope>
 std::string chosen_word(const Keys<Object, Scope>& keys, const Object& object) {
   if (keys.chooser.empty()) return {};
@@ -365,7 +366,7 @@ enum class Extent {
 };
 
 /// Reads a table key by key, in the order of its rows. Throws InputError for unknown keys, values out of bounds, and
-/// keys that `extent` does not allow.
+/// keys that are missing or refused according to `extent`.
 template <class Object, class Scope>
 void read_keys(const Keys<Object, Scope>& keys, const StudySection& section, Object& object, const Scope& scope,
                Extent extent = Extent::complete) {

@@ -22,7 +22,7 @@ std::vector<std::string_view> parts_of(std::string_view key) {
   return parts;
 }
 
-/// Writes a value into a table. A value that is not TOML is taken as a text.
+/// Writes a value into a table. If the value is not TOML, it is written as a text.
 void assign(toml::table& table, std::string_view key, const std::string& value) {
   const bool is_line = std::ranges::none_of(value, [](char c) { return c == '\n' || c == '\r' || c == '#'; });
   if (is_line) {

@@ -43,7 +43,7 @@ std::string described(const toml::node& node) {
   }
 }
 
-/// The sign of a range around zero, as drawings write it, with which a text begins; empty if there is none.
+/// The plus-minus sign ("+-", "+/-" or its Unicode character) at the beginning of a text; empty if there is none.
 std::string_view range_sign(std::string_view written) {
   for (const std::string_view sign : {"+-", "+/-", "\xC2\xB1"}) {
     if (written.starts_with(sign)) return sign;
@@ -61,9 +61,9 @@ std::string plain_unit(std::string_view written) {
 }
 
 /// The unit that the user probably meant; null if none is probable. A unit is probable if its name differs from the
-/// written text only in capitals and blanks, or if the text begins with the name of the unit, as "degrees" begins with
-/// "deg". Other similar names are not probable, because one letter more or less at the beginning gives another unit:
-/// dm, nm, mdeg, grad.
+/// written text only in capitals and blanks, or if the text begins with the name of a unit of three or more letters, as
+/// "degrees" begins with "deg". Other similar names do not count, because one letter at the beginning changes the unit:
+/// nm and mm, deg and mdeg.
 const Unit* meant_unit(std::string_view written, Dimension dimension) {
   constexpr std::size_t kTelling = 3;
   const std::string plain = plain_unit(written);
@@ -82,8 +82,9 @@ std::string unit_remedy(std::string_view text, Dimension dimension) {
   return "write a number and a unit, e.g. " + example(dimension);
 }
 
-/// What to do about a key that does not apply for this word of the table's chooser: write the key that is missing, or
-/// the word for which the keys are complete. has: whether the table has a key.
+/// The advice about the key `refused`, which does not apply with this word of the table's chooser: to remove it, or to
+/// write the key that is missing instead, or the word with which the written keys are complete. has(name): whether the
+/// file's table has this key.
 template <class Has>
 std::string remedy_for(const StudyTable& table, const StudyKey& refused, std::string_view word, const Has& has) {
   const auto lacking = [&](std::string_view chosen) {
@@ -99,11 +100,11 @@ std::string remedy_for(const StudyTable& table, const StudyKey& refused, std::st
          std::string(*fitting) + "\"";
 }
 
-/// A key that users expect in a table that does not have it.
+/// A key that users write in a table although the table has no such key.
 struct ExpectedKey {
   std::string_view table;   ///< name of the table
   std::string_view key;     ///< name of the key
-  std::string_view beside;  ///< key that the table has, by which it differs from other files' tables of this name
+  std::string_view beside;  ///< key that tells this table from tables with the same name in other kinds of files
   std::string_view remedy;  ///< what to write instead
 };
 
@@ -139,7 +140,7 @@ bool StudyValue::yes_or_no() const {
 std::string StudyValue::text() const {
   const auto* text = node_->as_string();
   if (text == nullptr) wrong_type("write a text in quotes");
-  // The operating system would end a file name at the first NUL and so open another file.
+  // If the text is a file name, the operating system would end it at the NUL and open another file.
   if (text->get().find('\0') != std::string::npos) fail("holds a NUL character", "remove it");
   return text->get();
 }

@@ -33,7 +33,7 @@ class StudyValue {
   bool is_text() const { return node_->is_string(); }     ///< Returns true if the value is a text in quotes.
   bool is_section() const { return node_->is_table(); }   ///< Returns true if the value is a table.
   bool is_list() const { return node_->is_array(); }      ///< Returns true if the value is a list.
-  /// The value if it is true or false; none for any other value.
+  /// The value if it is a boolean; none for any other value.
   std::optional<bool> boolean() const { return node_->value_exact<bool>(); }
 
   bool yes_or_no() const;    ///< Reads true or false.
@@ -45,7 +45,7 @@ class StudyValue {
   /// Returns true if the value is the number 0, which needs no unit.
   bool is_zero() const;
   double positive_quantity(Dimension dimension) const;  ///< Reads a quantity above zero, SI.
-  /// Reads a quantity above zero, SI; a text may begin with a sign as on a drawing: "+-0.02 mm".
+  /// Reads a quantity above zero, SI; as on a drawing, the text may begin with a plus-minus sign: "+-0.02 mm".
   double half_width(Dimension dimension) const;
   double percent() const;  ///< Reads a share from a text in percent, such as "99.73 %".
   /// Reads one of these words, and returns its index.
@@ -53,7 +53,7 @@ class StudyValue {
   StudySection section() const;  ///< Reads a table.
   /// Reads a list. The full name of each element ends with its index: "pairs[0]".
   std::vector<StudyValue> list() const;
-  /// Reads a list of `size` elements. Throws InputError with this remedy if the number differs.
+  /// Reads a list of `size` elements. Throws InputError with this remedy if the list has another number of elements.
   std::vector<StudyValue> list(std::size_t size, std::string_view remedy) const;
 
   /// Throws InputError "NAME PROBLEM; REMEDY" at the value's place.
@@ -81,14 +81,15 @@ class StudySection {
   bool empty() const { return table_->empty(); }  ///< Returns true if the table has no key.
   std::vector<std::string> keys() const;          ///< The keys that the file gives, sorted by their bytes.
 
-  /// Throws InputError for a key that the table's description lacks (engine/schema/keys.h). This check is for tables
-  /// without keys that the model names.
+  /// Throws InputError for a key that is not in the table's description (engine/schema/keys.h). Precondition: the
+  /// description has no placeholder for names that the model gives.
   void allow() const;
-  /// Throws InputError for a key that is not in `known`. what: what the keys of this table name, for messages.
+  /// Throws InputError for a key that is not in `known`. what: noun for a key in messages, such as "joint".
   void allow(std::span<const std::string_view> known, std::string_view what) const;
-  /// Throws InputError for a key that does not apply for this word of the table's chooser.
+  /// Throws InputError for a key that does not apply with this word of the table's chooser (StudyTable::chooser),
+  /// unless the key is to be ignored (StudyKey::may_stay).
   void refuse_all_but_those_for(std::string_view word) const;
-  /// Throws InputError if the table has this key. The message says that the key "does not belong to OWNER".
+  /// Throws InputError if the table has this key. The message says that the key "does not belong to" `owner`.
   void refuse(std::string_view key, std::string_view owner) const;
 
   std::optional<StudyValue> find(std::string_view key) const;  ///< The value of a key; none if it is missing.

@@ -51,7 +51,8 @@ bool pass_string(Cursor& cursor, const OpenQuote& opened) {
   }
   if (cursor.at_end()) return false;
   cursor.advance(opened.quote.size());
-  // The text of a string of several lines may end with one or two quotes, followed by the closing three.
+  // A string in triple quotes may end with one or two quotes of its own before the closing three. Three quotes have
+  // been passed, so one or two may be left.
   for (int own = 0; own < 2 && !opened.is_of_one_line() && !cursor.at_end() && *cursor == mark; ++own) cursor.advance();
   return true;
 }

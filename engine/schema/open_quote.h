@@ -16,8 +16,9 @@ struct OpenQuote {
   bool is_of_one_line() const { return quote.size() == 1; }
 };
 
-/// The first quote with a string that is not closed: a short string must be closed on its line, a string in triple
-/// quotes before the end of the text. Comments and escaped quotes do not count. None if all strings are closed.
+/// The first quote whose string is not closed. A string in single or double quotes must be closed on its line, a string
+/// in triple quotes before the end of the text. Quotes in comments and escaped quotes do not count. None if all strings
+/// are closed.
 std::optional<OpenQuote> open_quote(std::string_view text);
 
 }  // namespace poesy

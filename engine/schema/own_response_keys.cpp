@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view kPrevious = "previous";
 constexpr std::string_view kOrigin = "origin";
 
-/// The type of the additional argument of readers that need only the value of the key.
+/// The Scope (see Key) of keys whose readers need only the value of the key.
 struct Nothing {};
 
 const Keys<OwnResponse, Nothing>& response_keys() {
@@ -77,10 +77,10 @@ std::optional<std::size_t> find_response(const ModelDescription& model, const st
   return static_cast<std::size_t>(found - model.responses.begin());
 }
 
-/// A point with three responses that are its displacement.
+/// A point of the platform whose displacement the model reports as three responses.
 struct ReportedPoint {
   std::string name;
-  /// Indices of the responses that are the displacement along the base's x, y and z.
+  /// Indices of the responses that are the displacement (m) along the base's x, y and z.
   std::array<std::size_t, 3> responses;
 };
 
@@ -103,7 +103,7 @@ std::vector<ReportedPoint> reported_points(const ModelDescription& model) {
   return points;
 }
 
-/// Reads tables of responses one after the other. Each response may use those that were read before it.
+/// Reads tables [[response]] one after the other. The terms of a response may be responses that were read before.
 class OwnReader {
  public:
   OwnReader(ModelDescription model, PoseBefore before) : model_(std::move(model)), before_(before) {}
@@ -265,7 +265,7 @@ class OwnReader {
     });
   }
 
-  /// Throws InputError if a term is a response that is relative to a pose, or that depends on such a response.
+  /// Throws InputError if a term is a response that is relative to a pose, or depends on a response that is.
   void check_terms(const StudyValue& value, const OwnResponse& own) const {
     for (const ResponseTerm& term : own.terms) {
       if (!model_.responses[term.response].is_relative) continue;

@@ -18,12 +18,13 @@ enum class PoseBefore {
 /// The description of tables [[response]] and their inner tables, for the reference.
 StudyTables own_response_tables();
 
-/// Reads a list of tables [[response]] for a model with this description. If a norm is relative to a pose, the function
-/// also adds a response NAME_MEMBER for the difference of each member of the norm. Throws InputError.
+/// Reads a list of tables [[response]] for a model with this description. If a norm NAME is relative to a pose, also
+/// adds for each response MEMBER in the norm a response NAME_MEMBER, which is the difference of MEMBER from its value
+/// at this pose. Throws InputError if a table is not valid.
 std::vector<OwnResponse> read_own_responses(const StudyValue& value, ModelDescription model, PoseBefore before);
 
-/// The responses as tables [[response]]. Reading these tables gives exactly the same responses. model: a model that has
-/// these responses.
+/// The responses as tables [[response]]. Reading these tables gives exactly the same responses. model: the description
+/// with these responses appended.
 std::string own_responses_text(const std::vector<OwnResponse>& own, const ModelDescription& model);
 
 }  // namespace poesy

@@ -12,7 +12,8 @@
 namespace poesy {
 namespace {
 
-/// The largest depth of nested tables that is shown. Studies have four levels; other texts may have thousands.
+/// The largest depth to which nested tables are shown. Studies have four levels; texts from damaged files may have
+/// thousands.
 constexpr int kDeepest = 16;
 
 /// A key of a table, and its value.

@@ -8,7 +8,8 @@ namespace poesy {
 
 /// One key of a resolved study and its value, for display.
 struct StudySetting {
-  /// Section of the key: "errors". A repeated section has a number, "analysis.cases 2"; empty at the top of the file.
+  /// Section of the key: "errors". A section of a list ends with its number, from 1: "analysis.cases 2". Empty for keys
+  /// before the first section.
   std::string section;
   std::string key;    ///< name of the key: "linear"
   std::string value;  ///< TOML on one line: "\"newton\"", "1000", "[\"1 m\", \"2 m\"]"

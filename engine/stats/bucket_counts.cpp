@@ -57,12 +57,13 @@ void BucketCounts::add(std::span<const double> values) {
   for (std::size_t first = 0; first < values.size(); first += kPiece) {
     const std::span piece = std::span(keys).first(std::min(kPiece, values.size() - first));
     scale_.keys(values.subspan(first, piece.size()), piece);
-    // Finds the indices of many counts before it changes the counts. Counts are seldom in the cache; in this way
-    // several are fetched at the same time.
+    // The loop over keys finds the indices of up to kPiece counts, and the loop after it changes these counts. Counts
+    // are seldom in the cache; in this way the processor fetches several of them at the same time.
     std::size_t counted = 0;
     for (const std::uint64_t key : piece) {
       const std::uint64_t bucket = key & ~BucketScale::kSign;
-      // The sign is as good as random, so a branch on it would be slow. The count is found without such a branch.
+      // The sign of a value is as good as random, so a branch on the sign would be slow. The index below is computed
+      // without this branch.
       const bool zero = bucket < BucketScale::kFirstNormal;
       zeros_ += zero ? 1 : 0;
       if (zero) continue;
@@ -147,7 +148,7 @@ std::vector<BucketCounts::Filled> BucketCounts::below() const {
 }
 
 void BucketCounts::write_page(std::size_t begin, ByteWriter& to) const {
-  constexpr std::uint64_t kOneByte = 0x7f;  // numbers up to this take one byte in the state
+  constexpr std::uint64_t kOneByte = 0x7f;  // ByteWriter::number() writes numbers up to this in one byte
   std::array<std::byte, kPageBuckets> bytes;
   std::uint64_t bits = 0;
   for (std::size_t b = 0; b < kPageBuckets; ++b) {

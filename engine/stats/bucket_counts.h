@@ -24,11 +24,11 @@ class BucketCounts {
   };
 
   BucketCounts() = default;
-  /// Empty counts with room for kMostPages pages. A study may have thousands of these objects; because their sizes are
-  /// equal, they leave no gaps in memory.
+  /// Empty counts with room for kMostPages pages. A study may have thousands of these objects; because all allocate the
+  /// same size, the heap does not fragment.
   explicit BucketCounts(const BucketScale& scale) : scale_(scale) { counts_.reserve(kMostPages * kPageBuckets); }
 
-  /// The number of pages for which there is room from the beginning.
+  /// The number of pages for which the constructor reserves memory.
   static constexpr std::size_t kMostPages = 128;
 
   const BucketScale& scale() const { return scale_; }                  ///< The scale of the buckets.
@@ -44,16 +44,16 @@ class BucketCounts {
   /// Replaces the scale by the next coarser one, and the counts by those of the coarser scale. Precondition: there is a
   /// coarser scale.
   void coarsen();
-  /// The counts of the magnitudes, with values of both signs together. extremes: the extremes of the magnitudes. Takes
-  /// memory for each page between them.
+  /// The counts of the magnitudes: the counts of each bucket for both signs are added. extremes: the extremes of the
+  /// magnitudes. The result takes memory for each page between these extremes.
   BucketCounts folded(const Extremes& extremes) const;
 
-  std::vector<Filled> below() const;  ///< Buckets below zero, from the largest magnitude to the smallest.
-  std::vector<Filled> above() const;  ///< Buckets above zero, from the smallest to the largest.
+  std::vector<Filled> below() const;  ///< Filled buckets below zero, from the largest magnitude to the smallest.
+  std::vector<Filled> above() const;  ///< Filled buckets above zero, from the smallest to the largest.
 
   /// Writes every count.
   void write(ByteWriter& to) const;
-  /// Reads counts. Throws BytesError for counts that values with these extremes cannot give.
+  /// Reads counts. Throws BytesError if values with these extremes cannot have these counts.
   static BucketCounts read(ByteReader& from, const Extremes& extremes);
 
  private:

@@ -76,8 +76,8 @@ unsigned exponent_of(double magnitude) {
   return static_cast<unsigned>(std::bit_cast<std::uint64_t>(magnitude) >> kFractionBits);
 }
 
-/// The least octave with which keys() accepts the largest of these magnitudes. On this scale the bucket of this
-/// magnitude contains a single double.
+/// The least octave with which keys() accepts the largest of these magnitudes. If this octave is above 1, the bucket of
+/// the largest magnitude contains a single double.
 unsigned least_octave(const Extremes& extremes) {
   constexpr unsigned kMostBelow = kFractionBits - kEvenBits;
   unsigned exponent = 0;

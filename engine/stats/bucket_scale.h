@@ -21,7 +21,7 @@ struct Extremes {
   double min = std::numeric_limits<double>::infinity();          ///< smallest value; infinite without values
   double max = -std::numeric_limits<double>::infinity();         ///< largest value; minus infinity without values
   double least_above = std::numeric_limits<double>::infinity();  ///< smallest value above zero; infinite without one
-  /// Smallest magnitude of a value below zero; infinite without one.
+  /// Smallest magnitude of the values below zero; infinite without one.
   double least_below = std::numeric_limits<double>::infinity();
 
   /// The extremes of these values. Precondition: all values are finite.
@@ -41,9 +41,10 @@ inline constexpr std::size_t kPageBuckets = 64;
 /// The largest number of pages that a scale may span, of both signs together.
 inline constexpr std::size_t kMostPagesSpanned = 1023;
 
-/// Divides the magnitudes of one sign into buckets, numbered from zero. Below 2^(octave - 1023), each power of two is
-/// divided into 2^7 buckets. From there on, all buckets have the same width, 2^-8 of 2^(octave - 1023). A coarser scale
-/// has a larger octave, and each bucket is inside one bucket of any coarser scale.
+/// Divides the magnitudes of one sign into buckets, numbered from zero. Below 2^(octave - 1023), each range from a
+/// power of two to the next is divided into 2^7 buckets of equal width. From 2^(octave - 1023) on, all buckets have the
+/// width 2^(octave - 1031). A coarser scale has a larger octave, and each bucket is inside one bucket of any coarser
+/// scale.
 class BucketScale {
  public:
   static constexpr unsigned kCoarsest = 2047;  ///< the octave of the scale without buckets of equal width
@@ -56,14 +57,14 @@ class BucketScale {
   /// Precondition: 1 <= octave <= kCoarsest.
   explicit BucketScale(unsigned octave = 1) : octave_(octave) {}
 
-  /// The octave at and above which all buckets have the same width, as a biased exponent of a double.
+  /// The biased exponent of the doubles from which on all buckets have the same width.
   unsigned octave() const { return octave_; }
   bool is_coarsest() const { return octave_ == kCoarsest; }         ///< Returns true if there is no coarser scale.
   BucketScale coarser() const { return BucketScale(octave_ + 1); }  ///< The next coarser scale, with twice the width.
   bool operator==(const BucketScale& other) const = default;  ///< Returns true if both scales have the same buckets.
   /// The first of the buckets that have equal widths.
   std::uint64_t first_even() const { return std::uint64_t{octave_} << 7; }
-  /// The page of the next coarser scale that contains a page.
+  /// The page of the next coarser scale that contains this page of the present scale.
   std::uint64_t page_of_coarser(std::uint64_t page) const;
 
   /// The number of the bucket of each value, plus kSign if the value is below zero. Precondition: the biased exponent
@@ -88,7 +89,7 @@ PageRange pages_spanned(const Extremes& extremes, const BucketScale& scale, bool
 
 /// Returns true if a scale can be used for values with these extremes: both signs together span at most
 /// kMostPagesSpanned pages, and keys() accepts the values. If a scale fits, all coarser scales fit. A scale that does
-/// not fit does not fit after more values were added either.
+/// not fit still does not fit after more values are added.
 bool fits(const BucketScale& scale, const Extremes& extremes);
 /// The finest scale that fits values with these extremes; the coarsest scale if none fits.
 BucketScale finest_fitting(const Extremes& extremes);

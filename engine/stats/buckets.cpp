@@ -29,7 +29,7 @@ const Bucket& bucket_at(std::span<const Bucket> buckets, double share) {
   return bucket_of(buckets, quantile_rank(share, buckets.back().up_to));
 }
 
-/// Inner edges of bins at equal distances. histogram() moves them to edges of buckets.
+/// The inner edges of the bins of a histogram, at equal distances. histogram() moves them to edges of buckets.
 std::vector<double> even_edges(std::span<const Bucket> buckets, std::size_t count) {
   const double first = bucket_at(buckets, kTail).lower;
   const double last = bucket_at(buckets, 1.0 - kTail).upper;

@@ -17,14 +17,14 @@ class ChebyshevSeries {
   static const std::array<double, kNodes>& nodes();
 
   ChebyshevSeries() = default;  ///< The series without terms, which is 0.
-  /// The polynomial through these values [kNodes] at the nodes. Terms at the end are left out if their coefficients
-  /// are below the rounding of the largest.
+  /// The polynomial through these values [kNodes] at the nodes. The last terms are left out if their coefficients are
+  /// at most the rounding error (machine epsilon) of the largest coefficient.
   explicit ChebyshevSeries(std::span<const double> values);
 
-  /// The largest magnitude of the last coefficients, before terms were left out. It is small if the series has
+  /// The largest magnitude of the last three coefficients, before terms were left out. It is small if the series has
   /// converged.
   double tail() const { return tail_; }
-  /// The values at the points x [B] in [-1, 1]. A value does not depend on the other points.
+  /// Computes the values at the points x, which are in [-1, 1]. Each value depends only on its own point.
   void evaluate(std::span<const double> x, std::span<double> values) const;
 
  private:

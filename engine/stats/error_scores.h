@@ -10,8 +10,8 @@ namespace poesy {
 
 // The score of an error e with density f and size t is S(e) = d ln f(e; t) / d ln t. It states how the density changes
 // while all values of the error grow in proportion. For any event with probability P, dP/dt = E[1_event S] / t
-// (likelihood ratio; Rubinstein 1986, Math. Comput. Simul. 28, 365-379). The growth score is the counterpart for a
-// finite step, f(e; g t) / f(e; t) - 1: its mean over the event is the change of P if the error grows by a factor g.
+// (likelihood ratio; Rubinstein 1986, Math. Comput. Simul. 28, 365-379). The growth score G(e) = f(e; g t) / f(e; t) -
+// 1 is the counterpart for a finite step: E[1_event G] is the change of P if the error grows by a factor g.
 
 /// Results state the change of the yield if one error grows by this factor g.
 inline constexpr double kErrorGrowth = 1.1;
@@ -22,9 +22,9 @@ struct ScoreMoments {
   double cube;    ///< E[S^3]
 };
 
-/// The score of a normal error e = c + t z with mean c, standard deviation t and a standard normal z. The score is z^2
-/// - 1. phi and Phi are the density and the distribution function of z. If the error is truncated at c +- w, it is z^2
-/// - 1 + (2 w/t) phi(w/t) / (2 Phi(w/t) - 1).
+/// The score of a normal error e = c + t z with mean c, standard deviation t and a standard normal z is z^2 - 1. If the
+/// error is truncated at c +- w, the score is z^2 - 1 + (2 w/t) phi(w/t) / (2 Phi(w/t) - 1), where phi and Phi are the
+/// density and the distribution function of z.
 struct NormalScore {
   double sigma;         ///< size t: standard deviation before truncation, > 0
   double half_width;    ///< largest possible distance w from the mean; infinite if the normal is not truncated
@@ -39,9 +39,9 @@ struct NormalScore {
   /// @}
 };
 
-/// The score of an error of any distribution, for a size that grows about the mean of the error. It replaces the score
-/// in the strict sense, which does not exist if the ends of the range move with the size. It is valid for an event if
-/// the probability of the event, given the error, is a polynomial of degree kDegree in the error. With the orthonormal
+/// The score of an error of any distribution, for a size that grows about the mean of the error. It replaces d ln f / d
+/// ln t, which does not exist if the ends of the error's range move with the size. It is valid for an event if the
+/// probability of the event, given the error, is a polynomial of degree kDegree in the error. With the orthonormal
 /// polynomials p_k of the error's distribution and its mean c,
 ///
 ///     S(e) = sum over k = 1 .. kDegree of E[p_k'(e) (e - c)] p_k(e)
@@ -68,7 +68,8 @@ class PolynomialScore {
  private:
   using Factors = std::array<double, kDegree>;
 
-  /// x: [points] points from -1 to 1; centre: their mean.
+  /// Finds the orthogonal polynomials of the points, and the factors of both scores. x: [points] the points, scaled to
+  /// -1 to 1; centre: the weighted mean of x.
   void find_polynomials(std::span<const double> x, std::span<const double> weights, double centre, std::size_t degree);
   /// The sum over k of factors[k] q_(k+1) at an error, with the monic orthogonal polynomials q up to this degree.
   double sum_at(double error, const Factors& factors, std::size_t degree) const;
@@ -85,7 +86,7 @@ class PolynomialScore {
   ScoreMoments growth_moments_{};
 };
 
-/// The score of an error of a NormalBlock.
+/// The data of an error in a NormalBlock, which computes the score of this error.
 struct BlockScore {
   double sigma;         ///< standard deviation t of the error, > 0
   double centre = 0.0;  ///< mean c of the error
@@ -97,13 +98,13 @@ using ErrorScore = std::variant<std::monostate, NormalScore, PolynomialScore, Bl
 /// The size t of the error, by which a yield is differentiated: `sigma` of its score; 0 if the score is not known.
 double size_of(const ErrorScore& score);
 
-/// A block of k correlated normal errors e_i = c_i + t_i z_i, whose scores z have the correlation R. The score by the
-/// size t_i, for constant R and constant sizes of the other errors, is z_i (R^-1 z)_i - 1.
+/// A block of k correlated normal errors e_i = c_i + t_i z_i, where the z_i are standard normals with the correlation
+/// matrix R. The score of error i (for constant R and constant sizes of the other errors) is z_i (R^-1 z)_i - 1.
 struct NormalBlock {
   std::vector<std::size_t> errors;  ///< [k] indices among all errors; each of these errors has a BlockScore
   std::vector<double> triangle;     ///< [k x k] Cholesky factor L with L L^T = R, row-major
 
-  /// Replaces the normal scores z [k] of a machine by z_i (R^-1 z)_i - 1.
+  /// Replaces the standard normals z [k] of a machine by the scores z_i (R^-1 z)_i - 1.
   void replace(std::span<double> z) const;
 };
 

@@ -39,8 +39,8 @@ struct Strata {
   Vector steps;      ///< 1 / difference of the mean error between the two neighbouring bins; 0 without neighbours
   Vector spread;     ///< variance of the error within the bin
   Vector asymmetry;  ///< third central moment of the error within the bin
-  /// One bit for each bin: 1 if the error decreases from this bin to the next, which are then not neighbours. This
-  /// happens between the two halves of a shifted distribution.
+  /// One bit for each bin: 1 if the error decreases from this bin to the next; then the two bins are not neighbours.
+  /// This happens between the two halves of a shifted distribution.
   std::uint32_t ends = 0;
 
   Eigen::Index bins() const { return count.size(); }
@@ -150,10 +150,10 @@ void set_normal_parts(const Strata& strata, const Matrix& lines, const Matrix& s
   }
 }
 
-/// Sets the tails of a variance. The fourth moment of all samples is known, and therefore also the sum of E[k4(u)] and
-/// 4 E[d k3(u)]. Here d is the effect, and k3 and k4 are the third and fourth cumulants within the bin of u. The second
-/// term has two parts: one of the straight lines, and one of the deviations from the lines. The part of the deviations
-/// is estimated as if their skewness were the same in all bins.
+/// Sets `tails`. The fourth moment of all samples is known, and therefore also the sum of E[k4(u)] and 4 E[d k3(u)].
+/// Here d is the effect, and k3 and k4 are the third and fourth cumulants within the bin of u. The second term has two
+/// parts: one of the straight lines, and one of the deviations from the lines. The part of the deviations is estimated
+/// as if their skewness were the same in all bins.
 void set_tails(const Strata& strata, const Moments& all, BinnedVariance& found) {
   const auto n = static_cast<double>(all.count());
   const double deviation = std::sqrt(all.variance() * (n - 1.0) / n);

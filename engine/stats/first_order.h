@@ -9,7 +9,8 @@
 #include "engine/stats/moments.h"
 
 /// First-order indices of an error, estimated while all other errors vary too. The samples are divided into bins of the
-/// uniform number from which the error was drawn. Formulas and coverage of the intervals: theory.md, D58.
+/// uniform number from which the error was drawn. Formulas and coverage of the intervals: docs/theory.md and decision
+/// D58 in docs/decisions.
 namespace poesy {
 
 /// The number of bins of equal probability into which samples are divided.
@@ -25,8 +26,8 @@ struct BinSums {
   double square = 0.0;  ///< sum of (y - c)^2 over these responses
 };
 
-/// The distribution of an error within the bins, in any unit. It is needed to estimate the part of a main effect within
-/// bins. If all numbers are zero (default), effects are taken as steps from bin to bin.
+/// The distribution of an error within the bins, in any unit. It is needed to estimate how much a main effect varies
+/// within bins. If all numbers are zero (default), a main effect is taken as constant within each bin.
 struct BinSpread {
   std::array<double, kEffectBins> mean{};      ///< mean of the error in each bin
   std::array<double, kEffectBins> variance{};  ///< variance of the error within each bin
@@ -49,18 +50,18 @@ struct BinnedVariance {
   double between = 0.0;
   double total = 0.0;              ///< estimate of Var(y)
   std::array<double, 3> signal{};  ///< part from the product of the bins' noise and the effect
-  std::array<double, 3> noise{};  ///< part from the noise of the means and variances of the bins, as for normal samples
-  std::array<double, 3> tails{};  ///< part added by kurtosis and skewness within bins; used only if positive
+  std::array<double, 3> noise{};   ///< part from noise in the bins' means and variances, if samples are normal
+  std::array<double, 3> tails{};   ///< part added by kurtosis and skewness within bins; used only if positive
 };
 
 /// Computes the estimates for one error from the sums of a response in bins of the error's uniform number u. all: the
-/// moments of the same samples. Uses 16, 8 or 4 bins if there are fewer than 16 samples for each bin, or a bin has
-/// fewer than four. With fewer than kFewestIndexSamples samples all numbers are NaN.
+/// moments of the response over all samples. Bins are merged to 16, 8 or 4 bins if there are fewer than 16 samples per
+/// bin on average, or a bin has fewer than four. If even four bins have too few samples, `between` and `total` are NaN.
 ///
 /// The response also varies within a bin with the error. This variance is estimated as that of a straight line over the
-/// error (spread), with the slope between the two neighbouring bins; without a spread it is left out. Two bins are not
-/// neighbours if the error decreases from one to the next: a shifted distribution jumps back at u = 1/2, from the
-/// largest error of its low half to the smallest one of its high half.
+/// error, whose slope comes from the two neighbouring bins and whose range from `spread`; it is left out if `spread` is
+/// all zero. Two bins are not neighbours if the error decreases from one to the next: a shifted distribution jumps back
+/// at u = 1/2, from the largest error of its low half to the smallest one of its high half.
 ///
 /// `between` underestimates Var(E[y | u]). Relative bias with 32 bins, first without a spread and then with one, for
 /// these responses (z is a standard normal error):
@@ -80,9 +81,9 @@ enum class Dependence {
 };
 
 /// The first-order index S1 = Var(E[y | u]) / Var(y) of an error, at one pose or aggregated. Numerators and
-/// denominators of several poses are summed before the division, so a pose counts by the variance of the response
-/// there. For the components of a vector this gives the generalised index (Gamboa, Janon, Klein and Lagnoux 2014,
-/// Electron. J. Stat. 8, 575-603). NaN if nothing varies, or a part is not known.
+/// denominators of several poses are summed before the division, so each pose is weighted by the variance of its
+/// response. For the components of a vector this gives the generalised index (Gamboa, Janon, Klein and Lagnoux 2014,
+/// Electron. J. Stat. 8, 575-603). NaN if nothing varies, or if a part is NaN.
 ///
 /// An index is not clipped to [0, 1]: that of an error without effect is as often negative as positive, so that sums
 /// and means of indices are unbiased. The interval contains the indices that are compatible with the estimate.

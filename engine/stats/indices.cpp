@@ -41,7 +41,7 @@ struct PoseStatistics {
   double mean;
   double mean_variance;
   double seen2;            ///< sample variance of the x_i
-  double noise2;           ///< average part of seen2 that is sampling noise
+  double noise2;           ///< expected part of seen2 that is sampling noise
   double noise_variance;   ///< variance of seen2 if the true spread is zero
   double signal_variance;  ///< growth of the variance of seen2 per unit of true spread^2
   double covariance;       ///< covariance of the mean and seen2
@@ -58,9 +58,9 @@ double unbiased(const LocalIndex& pose) {
   return pose.value == 0.0 ? 0.0 : pose.value + 0.5 * square(pose.standard_error) / pose.value;
 }
 
-/// The sample variance is x' A x / (M - 1), where A subtracts the mean. For independent x_i with means mu_i and
-/// variances v_i, and V = diag(v), its variance is (4 mu' A V A mu + 2 tr(A V A V)) / (M - 1)^2. Its covariance with
-/// the mean is 2 1' V A mu / (M (M - 1)).
+/// Computes the statistics over the M poses. The sample variance is x' A x / (M - 1), where the matrix A subtracts the
+/// mean. For independent x_i with means mu_i and variances v_i, and V = diag(v), its variance is (4 mu' A V A mu + 2
+/// tr(A V A V)) / (M - 1)^2. Its covariance with the mean is 2 1' V A mu / (M (M - 1)).
 PoseStatistics statistics_over(std::span<const LocalIndex> poses) {
   const auto m = static_cast<double>(poses.size());
   const double freedom = std::max(m - 1.0, 1.0);
@@ -118,14 +118,14 @@ Interval spread_interval(const PoseStatistics& s, double z) {
   return {std::sqrt(std::max(middle - half, 0.0)), std::sqrt(std::max(middle + half, 0.0))};
 }
 
-/// The distance from mean + spread to one end of the interval of this sum. of_mean, of_spread: the distance from the
-/// mean to this end of its own interval, and the same for the spread (Zou and Donner 2008, with a correlation).
+/// The distance from mean + spread to one end of the interval of this sum. of_mean: the distance from the mean to the
+/// same end of the mean's interval; of_spread: the same for the spread (Zou and Donner 2008, with a correlation).
 double recovered(double of_mean, double of_spread, double correlation) {
   const double sum = square(of_mean) + square(of_spread) + 2.0 * correlation * of_mean * of_spread;
   return std::sqrt(std::max(sum, 0.0));
 }
 
-/// Mean + spread without sampling noise, and the interval of this sum. Precondition: every pose is known.
+/// Mean + spread without sampling noise, and the interval of this sum. Precondition: is_known(poses).
 Estimate without_noise(std::span<const LocalIndex> poses, double conf_level) {
   const double z = two_sided_normal_quantile(conf_level);
   const PoseStatistics s = statistics_over(poses);

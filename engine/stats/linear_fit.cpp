@@ -110,7 +110,7 @@ std::optional<LinearFit> LinearFitSums::fit() const {
   found.products.resize(errors_ * errors_);
   Eigen::Map<Matrix> products(found.products.data(), size, size);
   products = Eigen::Map<const Matrix>(xx_.data(), size, size).selfadjointView<Eigen::Lower>();
-  // Sums about the mean, so that the offset is not an unknown of the equations.
+  // The equations use sums about the means, so that the offset is not one of their unknowns.
   const Eigen::MatrixXd inverse = linalg::inverse(products - x * x.transpose() / n);
   products /= n;
   if (!inverse.allFinite()) return std::nullopt;

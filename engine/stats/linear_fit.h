@@ -10,9 +10,9 @@
 
 namespace poesy {
 
-/// A least-squares fit of several numbers of a machine, each as a linear function of the machine's errors. The study
-/// solves these machines anyway, so the fit needs no further solve. Errors are standardised, x = (e - mean) / sigma, so
-/// a slope is the effect of one standard deviation.
+/// A least-squares fit of several numbers of a machine (such as the components of a vector at each pose), each as a
+/// linear function of the machine's errors. It uses machines that the study solves anyway. Errors are standardised, x =
+/// (e - mean) / sigma, so a slope is the effect of one standard deviation.
 struct LinearFit {
   std::size_t errors = 0;      ///< number of errors
   std::uint64_t machines = 0;  ///< number of machines in the fit
@@ -47,10 +47,10 @@ class LinearFitSums {
   std::uint64_t machines() const { return machines_; }  ///< The number of machines that count.
 
   /// The fit. None if there are fewer than 2 (P + 1) machines for P errors, because so few say too little about
-  /// residuals.
+  /// residuals; none if the equations are singular.
   std::optional<LinearFit> fit() const;
 
-  void state(Archive& archive);  ///< Reads or writes every bit.
+  void state(Archive& archive);  ///< Reads or writes all sums, bit for bit.
 
  private:
   void add_machine(std::span<const double> x, std::span<const double> numbers);
@@ -61,7 +61,7 @@ class LinearFitSums {
   std::vector<double> x_;   ///< [errors] sums of x over the machines
   std::vector<double> xx_;  ///< [errors x errors] sums of x_p x_q over the machines, q <= p
   /// [numbers] The numbers of the first machine. They are so near to those of all other machines that no digits cancel
-  /// in sums of differences.
+  /// in sums of the differences from them.
   std::vector<double> shift_;
   std::vector<double> y_;   ///< [numbers] sums of y - shift
   std::vector<double> yy_;  ///< [numbers] sums of (y - shift)^2

@@ -18,14 +18,15 @@ class ErrorRange {
   /// [kCells + 1] The shares in (0, 1), ascending, at which the constructor needs the error's quantile function.
   static std::vector<double> grid();
 
-  /// quantiles: [kCells + 1] ascending. centre: the mean, about which the error grows.
+  /// quantiles: [kCells + 1] the values of the quantile function at grid(), ascending. centre: the mean of the error.
   ErrorRange(std::vector<double> quantiles, double centre);
 
   /// The share of the errors that are below the value e, interpolated linearly within a cell.
   double below(double e) const;
-  /// The share of the errors that are below the value e, if the error is `growth` times as large about its centre.
+  /// The share of the errors that are below the value e, if the distances of all errors from the centre grow by the
+  /// factor `growth`.
   double below(double e, double growth) const { return below(centre_ + (e - centre_) / growth); }
-  /// The difference of the largest and the smallest value.
+  /// The difference of the largest and the smallest error.
   double length() const { return quantiles_.back() - quantiles_.front(); }
 
  private:
@@ -63,8 +64,8 @@ class LinearLimits {
     std::vector<double> high;  ///< [errors x machines] upper end of the range in which the machine is good
   };
 
-  /// errors: [errors x machines] SI, row-major. reach: [errors] the largest change of each error. The range of an error
-  /// is needed only within this distance of its value, and is not computed if the distance is 0.
+  /// Judges machines. errors: [errors x machines] SI, row-major. reach: [errors] the largest change of each error. The
+  /// range of an error is needed only within this distance of its value, and is not computed if the distance is 0.
   Machines machines(std::span<const double> errors, std::span<const double> reach) const;
 
  private:

@@ -23,7 +23,8 @@ void add(Array<Rejects, Axes...>& to, const Array<Rejects, Axes...>& rejects) {
 }
 
 /// Reads or writes rejects. When reading, checks them against `among`, the rejects under any limit, and against the
-/// number of machines with an unsolved sample: only such a machine can be in the strict count alone.
+/// number of machines with an unsolved sample: only a machine with an unsolved sample can be in `strict` and not in
+/// `lenient`.
 void rejects_state(Archive& archive, Rejects& rejects, const Rejects& among, std::uint64_t unsolved) {
   archive.number(rejects.strict, among.strict);
   archive.number(rejects.lenient, std::min(among.lenient, rejects.strict));

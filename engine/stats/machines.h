@@ -25,7 +25,7 @@ struct Rejects {
 /// The numbers of rejected machines. A response without a limit has an infinite limit. So it rejects only machines with
 /// an unsolved sample, and only in Rejects::strict.
 struct MachineCounts {
-  std::uint64_t machines = 0;               ///< machines that were tried
+  std::uint64_t machines = 0;               ///< machines that were evaluated
   std::uint64_t unsolved = 0;               ///< machines with an unsolved sample at one pose or more
   Rejects all;                              ///< machines that break any limit
   Array<Rejects, axis::Response> by_limit;  ///< machines that break the limit of each response
@@ -64,8 +64,8 @@ class MachineBlock {
 
   /// [machines] 1 if the machine is rejected (strict), else 0; an argument of ScoreSums::add().
   std::vector<std::uint8_t> rejected() const;
-  /// [machines] 1 if all samples of the machine count, else 0. For numbers that a machine has over all its poses, it is
-  /// the argument `counts` of MainEffectSums::add().
+  /// [machines] 1 if all samples of the machine count, else 0. MainEffectSums::add() takes it as `counts` if its
+  /// responses are numbers over all poses of a machine.
   std::span<const std::uint8_t> solved() const { return solved_; }
   /// Largest magnitudes over the poses; NaN if the machine is not solved at each of them.
   Array<double, axis::Response, axis::Sample> largest() const;
@@ -78,7 +78,8 @@ class MachineBlock {
  private:
   /// The values of a machine at the poses where its sample counts.
   std::vector<double> values_of(std::size_t response, std::size_t machine) const;
-  /// [machines] 1 if the limit is broken at the poses where the machine's sample counts, else 0.
+  /// [machines] 1 if the machine breaks the limit of this response, judged only by the poses where its sample counts;
+  /// else 0.
   std::vector<std::uint8_t> beyond(std::size_t response) const;
   /// The rejects of a response at one pose, if its limit judges all poses of a machine together (a share of the poses,
   /// or the spread over them); see MachineCounts::at_pose. beyond: [machines] what the function beyond() returns for
@@ -91,7 +92,7 @@ class MachineBlock {
   Array<double, axis::Response, axis::Sample> largest_;
   Array<double, axis::Response, axis::Sample> squares_;  ///< sums of squares over the poses where the machine is solved
   Array<std::uint8_t, axis::Response, axis::Sample> beyond_;  ///< 1 if the machine is beyond the limit at some pose
-  std::vector<std::vector<Rejects>> at_pose_;                 ///< [poses][responses] rejects at each pose
+  std::vector<std::vector<Rejects>> at_pose_;                 ///< [poses][responses] rejects, judged at each pose alone
   /// For each response, its values [poses x machines] if the limit is not plain.
   std::vector<std::vector<double>> values_;
   std::vector<std::uint8_t> counts_;  ///< [poses x machines] 1 if the sample counts; empty if all limits are plain

@@ -52,7 +52,7 @@ std::vector<double> only_counting(std::span<const double> values, std::span<cons
 }
 
 /// Returns true if samples in a bin can give these sums. square: mean square of (response - shift) over all samples.
-/// Where blocks with different shifts are merged, the rounding errors of the sums are in proportion to this mean
+/// After blocks with different shifts were merged, the rounding errors of the sums are in proportion to this mean
 /// square.
 bool possible(const BinSums& bin, double square) {
   constexpr double kRounding = 1e-9;

@@ -24,7 +24,7 @@ RangeChange change_in(const ErrorRange& error, double low, double high) {
 
 Estimate estimate_of(const PowerSums& powers, std::uint64_t machines, const ScoreMoments& score, double conf_level) {
   const auto n = static_cast<double>(machines);
-  const ScoreMoments added{kAddedRejects * score.square / n, 0.0};  // further machines that the linear map misjudges
+  const ScoreMoments added{kAddedRejects * score.square / n, 0.0};  // assumed further machines that the map misjudges
   return skewed_mean(powers, machines, added, n - 1.0, conf_level);
 }
 

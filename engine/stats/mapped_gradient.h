@@ -28,7 +28,7 @@ struct MappedError {
 /// which H = 1. This mean has little noise, because every machine contributes a probability instead of 0 or 1. The
 /// second term is -E[(reject - reject by the map) S] / t with the score S, as in ScoreSums. Only the few machines that
 /// the map misjudges contribute, so this term has little noise too, and the part that the score leaves out is small.
-/// For any map the bias is at most that of the score; a bad map only adds noise.
+/// Whatever the map, the bias is at most that of the score; a bad map only adds noise.
 class MappedGradient {
  public:
   /// errors: [errors], std::nullopt for an error whose gradient is not wanted.

@@ -31,11 +31,12 @@ struct ErrorEffect {
 /// The shares for the vector whose components at all poses are the rows `rows` of the fit.
 ///
 /// The part of an error is the sum of slope^2 over the rows, less the bias from noise. The interval takes the noise of
-/// all rows as fully correlated, because the same machines are used at all poses. It also takes five times the variance
-/// of a slope that least squares give. This factor is correct for residuals that are the square of a normal error z:
-/// E[(z^2 - 1)^2 z^2] = 5 E[(z^2 - 1)^2] E[z^2]. For residuals that do not depend on the error the interval is too
-/// wide. poses: the number of poses in the rows. errors: [errors]. All numbers are NaN if only rounding varies.
-/// Precondition: 0 < conf_level < 1.
+/// all rows as fully correlated, because the same machines are used at all poses. It is computed with five times the
+/// least-squares variance of each slope. This factor is correct for residuals that are the square of a normal error z:
+/// E[(z^2
+/// - 1)^2 z^2] = 5 E[(z^2 - 1)^2] E[z^2]. For residuals that do not depend on the error the interval is too wide.
+/// poses: the number of poses in the rows. errors: [errors]. All numbers are NaN if only rounding varies. Precondition:
+/// 0 < conf_level < 1.
 MeanSquareShares mean_square_shares(const LinearFit& fit, std::span<const std::size_t> rows, std::size_t poses,
                                     std::span<const ErrorEffect> errors, double conf_level);
 

@@ -11,18 +11,18 @@
 
 namespace poesy {
 
-/// Merges numbered leaves in an order that depends only on their numbers: leaves 8k, 8k + 1, ... 8k + 7 one after the
-/// other, then eight such branches, and so on. So a sum of floating-point numbers has the same bits however the leaves
-/// were divided into ranges, if the ranges are merged in order. The tree keeps one sum for each octal digit of the
-/// number of leaves. If its first leaf is not leaf 0, it keeps up to seven more for each digit. Sum is a value type
-/// with merge(const Sum&), whose argument is the sum of later leaves.
+/// Merges numbered leaves (for instance the sums of blocks of samples) in an order that depends only on their numbers:
+/// leaves 8k, 8k + 1, ... 8k + 7 are merged one after the other to a branch, then eight branches to a larger branch,
+/// and so on. So a sum of floating-point numbers has the same bits however the leaves were divided into ranges, if the
+/// ranges are merged in order. The tree keeps one sum for each octal digit of the number of leaves. If its first leaf
+/// is not leaf 0, it keeps up to seven more for each digit. Sum is a value type with merge(const Sum&), whose argument
+/// is the sum of later leaves.
 template <class Sum>
 class MergeTree {
  public:
   /// The merged sum of several leaves: of a whole branch, or of the first branches of a larger branch.
   struct Node {
-    std::size_t
-        first;  ///< number of the first leaf; a multiple of the number of leaves of the branch, or of the larger branch
+    std::size_t first;   ///< number of the first leaf
     std::size_t leaves;  ///< number of leaves: a power of eight, times 2 to 7 if the node has several branches
     Sum sum;             ///< sum of these leaves
   };
@@ -53,7 +53,7 @@ class MergeTree {
   /// The number of the last leaf plus 1; 0 if there are none.
   std::size_t end() const { return empty() ? 0 : nodes_.back().first + nodes_.back().leaves; }
 
-  /// The sum of all leaves, merged from the last node, the smallest, to the first. Precondition: there is a leaf.
+  /// The sum of all leaves, merged from the last node to the first. Precondition: there is a leaf.
   Sum total() && {
     POESY_EXPECTS(!empty());
     while (nodes_.size() > 1) {
@@ -73,7 +73,7 @@ class MergeTree {
   std::span<const Node> nodes() const { return nodes_; }
 
   /// Reads or writes every node. When reading, the nodes are added as the next leaves, which must be below
-  /// `end_of_all`. none: an empty sum, from which each sum that is read begins.
+  /// `end_of_all`. none: an empty sum; each sum that is read begins as a copy of it.
   void state(Archive& archive, std::size_t end_of_all, const Sum& none) {
     std::uint64_t count = nodes_.size();
     archive.number(count);
@@ -98,6 +98,7 @@ class MergeTree {
     for (; leaves % kBranches == 0; leaves /= kBranches) branch *= kBranches;
     return branch;
   }
+  /// Returns true if a node may have these leaves: a whole branch, or the first 2 to 7 branches of a larger branch.
   static bool is_node(std::size_t first, std::size_t leaves) {
     if (leaves == 0) return false;
     const std::size_t branch = branch_of(leaves);
@@ -110,7 +111,7 @@ class MergeTree {
     archive.expect(is_node(node.first, node.leaves), "has sums of no whole branch");
     archive.object(node.sum);
   }
-  /// Returns true if b is the next branch after a in the same larger branch.
+  /// Returns true if b is one branch, and a and b together are the first branches of the same larger branch.
   static bool goes_on(const Node& a, const Node& b) {
     const bool is_branch = branch_of(b.leaves) == b.leaves;
     return is_branch && branch_of(a.leaves) == b.leaves && a.first % (b.leaves * kBranches) == 0;

@@ -72,7 +72,7 @@ Moments Moments::of(std::span<const double> values) {
   const double shift = m1 / n;
   moments.count_ = values.size();
   moments.mean_ = mean + shift;
-  moments.m2_ = std::max(0.0, m2 - n * shift * shift);  // rounding must not make it negative
+  moments.m2_ = std::max(0.0, m2 - n * shift * shift);  // rounding must not make m2_ negative
   moments.m3_ = m3 - 3.0 * shift * m2 + 2.0 * n * shift * shift * shift;
   moments.m4_ = m4 - 4.0 * shift * m3 + 6.0 * shift * shift * m2 - 3.0 * n * shift * shift * shift * shift;
   return moments;
@@ -170,7 +170,7 @@ Estimate stratified_mean(const Groups& groups, double conf_level) {
   double total = 0.0;
   double sum = 0.0;
   double squares = 0.0;   // sum of n s^2 over the groups, with n samples of standard deviation s
-  double quartics = 0.0;  // sum of (n s^2)^2 / (n - 1) over the groups, n and s as above
+  double quartics = 0.0;  // sum of (n s^2)^2 / (n - 1) over the groups
   for (std::size_t m = 0; m < groups.count.size(); ++m) {
     if (groups.count[m] == 0) continue;
     const auto n = static_cast<double>(groups.count[m]);

@@ -23,7 +23,7 @@ struct Estimate {
 /// streams can be merged (Welford; Chan et al. 1983; Pebay 2008, Sandia report SAND2008-6212, Eqs. 1.1-1.7, 2.1-2.4).
 class Moments {
  public:
-  void add(double value);  ///< Adds a value. The order changes only rounding.
+  void add(double value);  ///< Adds a value. The order of values changes only rounding errors.
   /// The moments of numbers in memory, computed in two passes, which is faster than adding them one by one.
   static Moments of(std::span<const double> values);
   /// Adds the moments of a later stream. Merging in the same order gives the same bits.
@@ -40,7 +40,7 @@ class Moments {
   /// zero or undefined.
   double kurtosis() const;
 
-  void state(Archive& archive);  ///< Reads or writes every bit.
+  void state(Archive& archive);  ///< Reads or writes all members, bit for bit.
 
  private:
   std::uint64_t count_ = 0;
@@ -78,7 +78,7 @@ Interval mean_interval(const Moments& moments, double conf_level);
 class MeanIntervals {
  public:
   explicit MeanIntervals(double conf_level) : conf_level_(conf_level) {}  ///< Precondition: 0 < conf_level < 1.
-  Interval of(const Moments& moments);  ///< The interval, bit for bit that of mean_interval().
+  Interval of(const Moments& moments);  ///< The interval of mean_interval(), with the same bits.
 
  private:
   double conf_level_;

@@ -48,7 +48,8 @@ struct Codes {
   }
 };
 
-/// Stores the lowest bytes of all codes, then the second bytes, and so on. Loops work on whole vectors on any machine.
+/// Stores the lowest bytes of all codes, then the second bytes, and so on. In this order compilers can vectorise the
+/// loops for every instruction set.
 POESY_EACH_INSTRUCTION_SET void to_planes(std::span<const std::uint32_t> codes, std::span<std::byte> planes) {
   for (std::size_t plane = 0; plane * codes.size() < planes.size(); ++plane) {
     std::byte* bytes = planes.data() + plane * codes.size();

@@ -13,12 +13,13 @@ struct NumberBlock {
   NumberBlock() = default;
   explicit NumberBlock(std::span<const double> numbers);  ///< Precondition: all numbers are finite.
 
-  /// The numbers. If there are more than kMostExact, each may be replaced by another number of the same bucket
-  /// (bucket_scale.h).
+  /// The numbers. In a block of more than kMostExact numbers that read() made, each is replaced by the end of its
+  /// bucket that is nearer to zero (bucket_scale.h).
   std::vector<double> values;
   Extremes extremes;  ///< extremes of the numbers
 
-  /// Sorts a small block, so that a sketch without other numbers need not do it. Any order gives the same quantiles.
+  /// Sorts the numbers if there are at most kMostExact, so that a sketch of only this block need not sort them. Any
+  /// order gives the same quantiles.
   void sort_few();
 
   /// Writes the block in the form that a sketch needs. Up to kMostExact numbers are written exactly. In a larger block

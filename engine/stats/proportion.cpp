@@ -10,8 +10,8 @@
 namespace poesy {
 namespace {
 
-// With double arithmetic, the relative error of a bound is 1e-13 for a million trials and 5e-12 for 1e10 trials. It
-// takes a seventh of the time of long double, Boost's default.
+// With double arithmetic, the relative error of a bound is 1e-13 for a million trials and 5e-12 for 1e10 trials. Double
+// arithmetic takes a seventh of the time of long double, Boost's default.
 using InDouble = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
 }  // namespace

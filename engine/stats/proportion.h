@@ -8,8 +8,9 @@
 /// 26, 404-413). These limits are exact: for any true proportion, their coverage is at least the level.
 namespace poesy {
 
-/// The share k / n with its two-sided interval. On either side, at most (1 - conf_level) / 2 of all intervals miss the
-/// true share. Without trials the share is NaN, and the interval is [0, 1]. Preconditions: k <= n, 0 < conf_level < 1.
+/// The share k / n of k successes in n trials, with its two-sided interval. On either side, at most (1 - conf_level) /
+/// 2 of all intervals miss the true share. Without trials the share is NaN, and the interval is [0, 1]. Preconditions:
+/// k <= n, 0 < conf_level < 1.
 Estimate proportion(std::uint64_t k, std::uint64_t n, double conf_level);
 
 /// The one-sided lower limit of the true share; 0 if k = 0. Preconditions as for proportion().

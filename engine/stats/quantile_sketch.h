@@ -31,11 +31,11 @@ struct Bucket {
 /// are between the smallest and the largest number. So buckets are narrow if the numbers are close to each other,
 /// whatever their mean, and a number far from all others costs one page. Merging is exact, because more numbers never
 /// make the scale finer, and counts are whole numbers: the result has the same bits for any order of merging and any
-/// division of the stream. Memory: 16 kB for the pages and 2 kB for the pages spanned; on the coarsest scale 128 bytes
-/// for each page with numbers, and two pages for each factor of two and sign.
+/// division of the stream. Memory: 16 kB for the pages with numbers, and 2 kB for the places of all pages spanned. The
+/// coarsest scale has no such bound: it has two pages of 128 bytes for each power of two and sign.
 class QuantileSketch {
  public:
-  /// The largest number of pages of buckets, unless the coarsest scale has more.
+  /// The largest number of pages with numbers, unless even the coarsest scale needs more.
   static constexpr std::size_t kMostPages = BucketCounts::kMostPages;
   /// The largest relative error of quantile() as an order statistic. The error is also at most half of the bucket's
   /// width (order_statistic_error()). Numbers below 2^-1022 in magnitude (subnormal) count as zero.
@@ -62,13 +62,13 @@ class QuantileSketch {
   /// A sketch of the magnitudes of the values, on the same scale or a coarser one.
   QuantileSketch magnitudes() const;
 
-  /// Reads or writes every count: up to two bytes for each bucket.
+  /// Reads or writes the values that are kept, or the counts of all buckets.
   void state(Archive& archive);
 
  private:
   bool keeps_all() const { return count() <= kMostExact; }
   void add(std::span<const double> values, const Extremes& extremes);
-  /// Changes to coarser scales until all numbers fit.
+  /// Changes to coarser scales until fits() accepts all numbers, and makes room for them.
   void fit();
   /// Changes to coarser scales until there are at most kMostPages pages.
   void save_pages();

@@ -71,8 +71,8 @@ Estimate RatioSums::estimate(double conf_level) const {
   if (xx_ == xw_ * value() && xw_ == ww_ * value()) return {value(), {value(), value()}};  // there is no scatter
   const auto n = static_cast<double>(count_);
   const double z = student_quantile(n - 1.0, conf_level);
-  // The variances of the means of x and w, and their covariance, in units of the mean of w so that small numbers do not
-  // underflow.
+  // z^2 times the variances of the means of x and w, and z^2 times their covariance. The unit is the mean of w, so that
+  // small numbers do not underflow.
   const double mean = w_ / n;
   const double ratio = x_ / w_;
   const double scale = z * z / (n * (n - 1.0));

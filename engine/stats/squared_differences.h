@@ -8,11 +8,11 @@
 #include "engine/stats/moments.h"
 
 /// Sobol' indices from squared differences of pairs of samples. A and B are two independent samples of all errors; C is
-/// A with the errors of one group taken from B. With V the variance of y,
+/// A with the errors of one group taken from B. With the response y, its values y_A, y_B, y_C and its variance V,
 ///
 ///     E[(y_A - y_B)^2] = 2 V                  A and B have nothing in common
-///     E[(y_A - y_C)^2] = 2 V ST               they differ in the group alone (Jansen 1999, Eq. 9)
-///     E[(y_B - y_C)^2] = 2 V (1 - S1)         they have the group alone in common (Jansen 1999, Eq. 6)
+///     E[(y_A - y_C)^2] = 2 V ST               A and C differ only in the group (Jansen 1999, Eq. 9)
+///     E[(y_B - y_C)^2] = 2 V (1 - S1)         B and C have only the group in common (Jansen 1999, Eq. 6)
 ///
 /// So an index is a ratio of two means of the same samples. The mean of y does not enter, so no digits cancel and no
 /// shift is needed. Sums over the components of a vector, or over poses with the same machines, give the generalised
@@ -36,11 +36,11 @@ class RatioSums {
   /// The ratio mean_x() / mean_w(); NaN if no w is above zero.
   double value() const;
   /// The ratio with Fieller's interval, by Student's quantile with count - 1 degrees of freedom. The interval is
-  /// [value, value] if x and w do not scatter about the ratio; NaN at both ends below two pairs, or if w may be zero at
-  /// this level. Precondition: 0 < conf_level < 1.
+  /// [value, value] if x and w do not scatter about the ratio; NaN at both ends below two pairs, or if the mean of w
+  /// may be zero at this level. Precondition: 0 < conf_level < 1.
   Estimate estimate(double conf_level) const;
 
-  void state(Archive& archive);  ///< Reads or writes every bit.
+  void state(Archive& archive);  ///< Reads or writes all sums, bit for bit.
 
  private:
   std::uint64_t count_ = 0;

@@ -15,7 +15,8 @@ bool is_tested(const Estimate& estimate) {
   return !std::isnan(estimate.interval.low) && !std::isnan(estimate.interval.high);
 }
 
-/// The factor by which Student's quantile may grow before the interval includes zero.
+/// The factor by which Student's quantile may grow before the interval of the estimate includes zero; see
+/// told_together().
 double reach(const Estimate& estimate, const Interval& bounds) {
   const auto [value, interval] = estimate;
   double below = value - interval.low;

@@ -8,13 +8,13 @@
 namespace poesy {
 
 /// Finds which of several quantities are shown to differ from zero, by Holm's steps (1979, Scand. J. Stat. 6, 65-70);
-/// the result is true for these. With a probability of at least conf_level it is true for none of the quantities that
-/// are zero, also if they depend on each other.
+/// the result is true for these quantities. With a probability of at least conf_level, the result is false for every
+/// quantity that is zero, even if the estimates are correlated.
 ///
 /// estimates: with intervals of skewed_mean() (yield_gradient.h) at conf_level and with these degrees of freedom. The
-/// result is false for NaN. bounds: the least and the largest end that an interval may have. An end at its bound was
-/// moved there; the distance of the other end is then used for both. The result is false for all if freedom < 1.
-/// Precondition: 0 < conf_level < 1.
+/// result is false for NaN. bounds: the range to which the ends of all intervals were limited (within() in
+/// yield_gradient.h). If an end is at its bound, its distance from the estimate is replaced by that of the other end.
+/// The result is false for all if freedom < 1. Precondition: 0 < conf_level < 1.
 ///
 /// A step needs the interval at a higher level, which follows from the one at conf_level: the difference of the
 /// distances from the estimate to both ends grows with the square of Student's quantile, and so does their product. An

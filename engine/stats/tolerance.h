@@ -42,15 +42,15 @@ struct ReferenceError {
 /// sigma. None if no error has an effect.
 std::optional<std::size_t> smallest_effect(std::span<const double> index, std::span<const double> sigma);
 
-/// [errors] t_p = (mu_ref / mu_p) t_ref, which gives every error the effect of the reference (Du et al. 2022, Section
-/// 6.3, Table 10). All NaN if the reference has no effect.
+/// [errors] t_p = (mu_ref / mu_p) t_ref, with the indices mu_p. It gives every error the effect of the reference (Du et
+/// al. 2022, Section 6.3, Table 10). All NaN if the reference has no effect.
 std::vector<double> equal_effect_tolerances(std::span<const double> index, const ReferenceError& reference);
 
 /// The mean square of a response over the poses, for independent errors of mean zero and standard deviations t_p:
 /// background + sum of effects_p t_p^2. Exact for a response that is linear in the errors or the norm of a linear
 /// function; for others see Response::mean_square_bound. Its root is at least the mean of the response (Jensen).
 struct MeanSquare {
-  double background = 0.0;      ///< mean square over the poses of the response to the background alone
+  double background = 0.0;      ///< mean square over the poses of the response with all varied errors zero
   std::vector<double> effects;  ///< [errors] increase of the mean square per t_p^2; 0 for errors without effect
 
   /// The sum of effects_p t_p^2. Errors without effect do not count, even if their tolerance is infinite.
@@ -62,9 +62,9 @@ struct MeanSquare {
   double at(std::span<const double> tolerances) const { return background + growth(tolerances); }
 };
 
-/// The mean square from the study's own samples: effects_p = mean over the poses of (mean square of the samples -
-/// background^2), or 0 if that is negative, over sigma_p^2. NaN if a pose has no background, or fewer than two samples
-/// of an error, or if an index is not known.
+/// The mean square from the study's own samples. effects_p is the mean over the poses of (mean square of the samples -
+/// background^2), divided by sigma_p^2 + mean_p^2 of the error; 0 if it is negative or the error has no effect. NaN if
+/// a pose has no background, or fewer than two samples of an error, or if an index is not known.
 MeanSquare mean_square(const ResponseStudy& study);
 
 /// [errors] The share of each error in the increase of the mean square by all errors with these standard deviations:
@@ -94,7 +94,7 @@ std::vector<double> one_size_for_each(std::span<const double> sigma, std::span<c
 /// The tolerances for this reference; without a reference, equal_effect is NaN.
 Tolerances tolerances(const ResponseStudy& study, const std::optional<ReferenceError>& reference);
 
-/// Tolerances with which the root mean square of a response, over samples and poses, is at a limit. The mean of the
+/// Tolerances with which the root mean square of a response, over samples and poses, equals a limit. The mean of the
 /// response is then below the limit.
 struct LimitTolerances {
   double limit = 0.0;  ///< limit on the response, SI

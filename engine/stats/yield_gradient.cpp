@@ -27,7 +27,7 @@ PowerSums power_sums(std::span<const std::size_t> rejects, const Score score) {
   return sums;
 }
 
-/// The sums for a normal error. Each function is not inlined, so that the compiler keeps its sums in registers.
+/// The sums for a normal error. The two functions are not inlined, so that the compiler keeps their sums in registers.
 /// @{
 [[gnu::noinline]] PowerSums slope_sums(const NormalScore& score, std::span<const double> row,
                                        std::span<const std::size_t> rejects) {
@@ -104,7 +104,7 @@ ScoreSums::ScoreSums(ErrorScores scores)
 void ScoreSums::add(std::span<const double> errors, std::span<const std::uint8_t> rejected) {
   const std::size_t count = rejected.size();
   POESY_EXPECTS(errors.size() == slope_.size() * count);
-  const std::vector<std::size_t> rejects = places(rejected);  // usually few, so only their scores are added
+  const std::vector<std::size_t> rejects = places(rejected);  // rejects are usually few, and good machines add nothing
   for (std::size_t p = 0; p < slope_.size(); ++p) {
     const std::span<const double> row = errors.subspan(p * count, count);
     if (const auto* normal = std::get_if<NormalScore>(&scores_.each[p])) {

@@ -31,18 +31,19 @@ struct PowerSums {
   }
 };
 
-/// The number of further rejects, with errors of any size, that are assumed when the spread of a score is estimated. A
-/// few rejects may not include the largest values of the score (Agresti and Coull 1998, Am. Stat. 52, 119-126, add two
-/// successes and two failures for a share).
+/// The number of assumed rejects that are added when the spread of a score is estimated. Their scores have the moments
+/// of the scores of all machines. A few rejects may not include the largest values of the score (Agresti and Coull
+/// 1998, Am. Stat. 52, 119-126, add two successes and two failures for a share).
 inline constexpr double kAddedRejects = 4.0;
 
 /// With fewer rejects, the coverage of an interval of the gradient is below its level (theory.md).
 inline constexpr std::uint64_t kFewRejects = 20;
 
 /// The mean of a number over n machines, from the sums `powers`, with an interval at this level by the central limit
-/// theorem. The mean of a skewed number is skewed, so each end of the interval has its own variance (variance +
-/// skewness (end - mean), as in Wilson's interval for a share), with Student's quantile for `freedom` degrees. added:
-/// terms added to the means of the number's square and cube. NaN at both ends if freedom < 1.
+/// theorem. The mean of a skewed number is skewed, so each end of the interval has its own variance (variance + (end -
+/// mean) m3 / variance with the third central moment m3, as in Wilson's interval for a share). The quantile is
+/// Student's with `freedom` degrees of freedom. added: terms added to the means of the number's square and cube. NaN at
+/// both ends if freedom < 1.
 Estimate skewed_mean(const PowerSums& powers, std::uint64_t machines, const ScoreMoments& added, double freedom,
                      double conf_level);
 

@@ -39,7 +39,7 @@ bool begins_with_magic(std::span<const std::byte> bytes) {
   return bytes.size() >= magic.size() && std::ranges::equal(bytes.first(magic.size()), magic);
 }
 
-/// Calls member() for each member of the identity, in the order in which the file has them.
+/// Calls member() for each member of the identity, in the order of the checkpoint file.
 template <class Identity, class Member>
 void for_each_member(Identity& identity, const Member& member) {
   member(identity.poesy_version);
@@ -83,13 +83,13 @@ Bytes take_blocks(ByteReader& from) {
   }
 }
 
-/// Fills `to` with the bytes of the file from byte number `at` on. Throws BytesError if the file is shorter.
+/// Fills `to` with bytes of the file, from byte `at` on. Throws BytesError if the file is shorter.
 void read_all(const PlainFile& file, std::uintmax_t at, std::span<std::byte> to) {
   if (!file.is_open() || file.read(at, to) != to.size()) throw BytesError("ends too early");
 }
 
-/// Reads the block that begins at byte number `at` of the file, and moves `at` to its end. The last block of a state is
-/// empty. Throws BytesError.
+/// Reads the block that begins at byte `at` of the file, and moves `at` to the end of the block. A state ends with an
+/// empty block. Throws BytesError.
 void read_block(const PlainFile& file, std::uintmax_t& at, Bytes& block) {
   constexpr std::size_t kMostDigits = 10;
   constexpr std::byte kMore{0x80};
@@ -316,7 +316,7 @@ bool RunLock::take(const std::string& result_path) {
   descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (descriptor_ < 0) {
     const int reason = errno;
-    // No lock file can be made; writing the result will have the same problem and report it.
+    // The lock file cannot be created. Writing the result into the same folder will fail too, and report the reason.
     if (!stands(path_)) return true;
     throw FileError(path_, "cannot be opened (" + std::generic_category().message(reason) + ")",
                     "remove it if no run is computing this result, or give another -o");
@@ -334,7 +334,7 @@ bool RunLock::take(const std::string& result_path) {
     throw InputError({.file = result_path}, "another run is computing this result",
                      "wait for it, or give each run its own -o");
   }
-  // Another run may have removed the file when it ended. A lock on a removed file excludes nobody.
+  // Another run may have removed the file between open() and flock(). A lock on a removed file excludes nobody.
   if (::fstat(descriptor_, &file) == 0 && file.st_nlink > 0) return true;
   close();
   return false;

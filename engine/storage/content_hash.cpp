@@ -29,7 +29,7 @@ bool is_bookkeeping(std::string_view attribute) {
          attribute.starts_with("_nc3");
 }
 
-/// Gives all NaNs in `numbers` the same bits. head: type and width of the numbers.
+/// Gives all NaNs in `numbers` the same bits, if the numbers are doubles. head: type and width of the numbers.
 void make_nans_equal(const h5::Value& head, std::span<std::byte> numbers) {
   constexpr std::uint64_t kNan = 0x7ff8000000000000U;
   if (head.type != h5::Value::Type::floating || head.width != sizeof(double)) return;
@@ -40,7 +40,7 @@ void make_nans_equal(const h5::Value& head, std::span<std::byte> numbers) {
   }
 }
 
-/// Adds the objects of a file to a hash, in the form that content_hash.h describes.
+/// Computes the hash of a file as content_hash.h describes it.
 class ContentHasher {
  public:
   explicit ContentHasher(const h5::File& file) : file_(file) {}

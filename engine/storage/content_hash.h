@@ -8,7 +8,7 @@
 
 #include "engine/storage/h5.h"
 
-// OpenSSL's state of a digest.
+// The state of a digest in OpenSSL.
 struct evp_md_ctx_st;
 
 namespace poesy {
@@ -33,9 +33,9 @@ Sha256::Digest sha256(std::span<const std::byte> bytes);  ///< The SHA-256 of th
 
 std::string hex(std::span<const std::byte> bytes);  ///< The bytes in lower-case hexadecimal.
 
-/// The SHA-256 (lower-case hexadecimal) of the content of a result file. The content leaves out `/run`, and the
-/// attribute `content_sha256` in which the file states this hash. The hash depends on names, shapes, types and values,
-/// not on how HDF5 stores them.
+/// The SHA-256 (lower-case hexadecimal) of the content of a result file. The group `/run` and the attribute
+/// `content_sha256`, in which the file states this hash, are not part of the content. The hash depends on names,
+/// shapes, types and values, not on how HDF5 stores them.
 ///
 /// What is hashed, in this order, so that any program can recompute it:
 ///
@@ -49,12 +49,12 @@ std::string hex(std::span<const std::byte> bytes);  ///< The bytes in lower-case
 ///     text(s)       = number(bytes of s), the bytes (UTF-8)
 ///     number(n)     = 64 bits, unsigned, little-endian
 ///
-/// beginning with object("/"). Links and attributes are in the order of the bytes of their names; an object with
-/// several links is hashed at each. The hash leaves out the link `/run`, the root's attribute `content_sha256`, and in
+/// The hash is that of object("/"). Links and attributes are in the order of the bytes of their names. An object with
+/// several links is hashed once for each. Not hashed are the link `/run`, the root's attribute `content_sha256`, and in
 /// all objects the attributes of dimension scales: CLASS, NAME, DIMENSION_LIST, REFERENCE_LIST, and names that begin
 /// with _Netcdf4 or _nc3.
 ///
-/// Throws h5::Error for content that a result file never has (neither numbers nor text).
+/// Throws h5::Error if a dataset or an attribute has neither numbers nor text, which no result file has.
 std::string content_sha256(const h5::File& file);
 
 }  // namespace poesy

@@ -30,7 +30,7 @@ constexpr int kClosed = -1;
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
-/// Throws if there is a file at the path that must not be replaced.
+/// Throws InputError if there is something at the path that must not be replaced.
 void check_present(const std::string& path, const OutputKind& kind, std::span<const std::string> inputs) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return;
@@ -48,7 +48,7 @@ void check_present(const std::string& path, const OutputKind& kind, std::span<co
                    "name another file with -o, or remove it");
 }
 
-/// The path to which a symbolic link leads, followed through several links.
+/// Follows a chain of symbolic links to the path where it ends. Returns a path that is not a link unchanged.
 std::string end_of_links(const std::string& path) {
   constexpr int kMostLinks = 40;  // the same limit as the system's
   fs::path at(path);
@@ -67,7 +67,7 @@ constexpr std::string_view kTemporary = ".tmp.";
 constexpr std::size_t kRandomBytes = 6;
 constexpr std::string_view kDigits = "0123456789abcdef";
 
-/// A random temporary name; empty if there are no random numbers, with the reason in errno.
+/// A random temporary name for a file; empty if `fill` fails, with the reason in errno.
 std::string temporary_name(const std::string& path, FillRandomly fill) {
   std::array<std::byte, kRandomBytes> bytes{};
   if (!fill(bytes)) return {};
@@ -84,7 +84,7 @@ bool is_temporary_name(std::string_view name, std::string_view of_file) {
   return name.size() == 2 * kRandomBytes && name.find_first_not_of(kDigits) == std::string_view::npos;
 }
 
-/// The permission bits of the first file if it exists, else of the second; none if neither exists.
+/// The permission bits of the file `first` if it is a plain file, else those of `second`; none if neither is.
 std::optional<mode_t> rights_of(const std::string& first, const std::string& second) {
   constexpr mode_t kAllRights = 0777;
   for (const std::string& file : {first, second}) {
@@ -94,7 +94,7 @@ std::optional<mode_t> rights_of(const std::string& first, const std::string& sec
   return std::nullopt;
 }
 
-/// The first 64 KiB of a plain file; none if it does not exist or cannot be read.
+/// The first 64 KiB of a plain file; none if there is no plain file or it cannot be read.
 std::optional<std::string> head_of(const std::string& path) {
   constexpr std::size_t kHead = 1 << 16;
   const PlainFile file(path);
@@ -106,8 +106,8 @@ std::optional<std::string> head_of(const std::string& path) {
   return head;
 }
 
-/// Syncs the folder, so that the rename survives a crash. Some file systems do not support this, but keep the file
-/// safe.
+/// Syncs the folder of a file, so that a rename survives a crash. Returns false with errno if that fails. It also
+/// returns true if the folder may not be opened (EACCES), or if the file system cannot sync folders (EINVAL).
 bool sync_folder(const std::string& path) {
   const int folder = ::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder == kClosed) return errno == EACCES;
@@ -158,7 +158,7 @@ void check_name_length(const std::string& path) {
   const std::size_t bytes = fs::path(path).filename().string().size() + kTemporary.size() + 2 * kRandomBytes;
   const long most = ::pathconf(folder_of(path).c_str(), _PC_NAME_MAX);
   if (most < 0 || bytes <= static_cast<std::size_t>(most))
-    return;  // short enough; or the limit is not known, and then the system reports a name that is too long
+    return;  // short enough, or of unknown limit: the system then reports a name that is too long
   throw InputError({.file = path},
                    fmt::format("has too long a name: with what is added while it is written it takes {} bytes, and "
                                "names in its folder have {} at the most",
@@ -176,7 +176,7 @@ bool stands(const std::string& path) {
 void remove_left_over(const std::string& path) {
   std::error_code error;
   const std::string name = fs::path(path).filename().string();
-  std::vector<fs::path> found;  // collected first, because a folder must not change while it is listed
+  std::vector<fs::path> found;  // removed only after the loop, because a folder must not change while it is listed
   for (fs::directory_iterator at(folder_of(path), error), end; !error && at != end; at.increment(error)) {
     if (is_temporary_name(at->path().filename().string(), name)) found.push_back(at->path());
   }
@@ -267,8 +267,8 @@ void FileWriter::commit() {
 
 std::uint64_t FileWriter::expected_size() const { return expected_ ? expected_() : length_; }
 
-/// The text "needs N bytes, M are free", as far as the numbers are known. The blocks of the unfinished file count as
-/// free, because this file will be removed.
+/// The text "; needs 1000 bytes, 200 are free", as far as the numbers are known. The blocks of the unfinished file
+/// count as free, because that file will be removed.
 std::string FileWriter::missing_space() const {
   const std::uint64_t size = expected_size();
   std::string text = size == 0 ? "" : "; needs " + std::to_string(size) + " bytes";
@@ -332,7 +332,7 @@ void put_at_second_name(const std::string& path, const std::string& second, Link
   std::error_code error;
   if (!temporary.empty() && link_file(path.c_str(), temporary.c_str()) == 0) {
     fs::rename(temporary, second, error);
-    ::unlink(temporary.c_str());  // a rename between two names of one file does nothing
+    ::unlink(temporary.c_str());  // needed if both names already were one file, because rename() then does nothing
     if (error) fail(error);
     return;
   }

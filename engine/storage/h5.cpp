@@ -41,7 +41,7 @@ Result checked(Result result, const char* action, const std::string& object) {
   return result;
 }
 
-/// Owns an id of HDF5, and closes it.
+/// Owns an id of an HDF5 object, and closes the object.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -101,7 +101,7 @@ Handle space_of(const Shape& shape) {
   return {H5Screate_simple(static_cast<int>(lengths.size()), lengths.data(), nullptr), H5Sclose, "make", "a space"};
 }
 
-// The largest number of elements: 2^31, or 16 GiB of doubles. The product of two such numbers does not overflow.
+// The largest number of elements of a dataset or an attribute: 2^31, or 16 GiB of doubles.
 constexpr hsize_t kMostElements = hsize_t{1} << 31U;
 constexpr std::size_t kWidestNumber = 16;
 
@@ -117,8 +117,8 @@ Shape shape_of(hid_t space, const std::string& object) {
   return {lengths.begin(), lengths.end()};
 }
 
-/// The size in bytes of the slices in which a dataset is written or read: large enough for fast disk access, small
-/// compared with a result.
+/// The size of the slices in which a dataset is written or read, in bytes. It is large enough for fast disk access, and
+/// small compared with the memory for a whole result.
 constexpr std::size_t kSlice = std::size_t{1} << 22U;
 
 /// A rectangular range of a dataset, called a hyperslab in HDF5.
@@ -156,7 +156,7 @@ void select(hid_t space, const Box& box, const std::string& name) {
           "take a part of", name);
 }
 
-/// The values in the form in which HDF5 takes them: numbers as they are, texts as a list of pointers.
+/// The values in the form that HDF5 needs for writing: numbers as they are, texts as a list of pointers.
 template <class T>
 auto elements(std::span<const T> values) {
   if constexpr (std::is_same_v<T, std::string>) {
@@ -191,7 +191,7 @@ struct Source {
   }
 };
 
-/// Returns true if all bytes of a dataset are contiguous in the file.
+/// Returns true if the dataset is stored as one contiguous piece of this number of bytes.
 bool is_in_one_piece(const Source& dataset, std::size_t bytes) {
   const Handle storage(H5Dget_create_plist(dataset.object.get()), H5Pclose, "read the storage of", dataset.name);
   return H5Pget_layout(storage.get()) == H5D_CONTIGUOUS && H5Dget_storage_size(dataset.object.get()) == bytes;
@@ -209,7 +209,7 @@ Source attribute_at(hid_t file, const std::string& path, const std::string& name
                      object}};
 }
 
-/// Frees HDF5's copies of texts.
+/// Pointers to texts that HDF5 allocated when it read them. The destructor frees these texts.
 struct TextBuffer {
   std::vector<char*> pointers;
   hid_t type;
@@ -221,7 +221,7 @@ struct TextBuffer {
 std::vector<std::string> read_texts(const Source& source) {
   if (H5Tis_variable_str(source.type.get()) <= 0) throw Error(source.name + " is not text of variable length");
   const Handle type = text_type();
-  // The encoding of the file is kept, because HDF5 does not convert between encodings.
+  // Texts are read in the encoding that the file states, because HDF5 does not convert between encodings.
   checked(H5Tset_cset(type.get(), H5Tget_cset(source.type.get())), "set the encoding of", source.name);
   TextBuffer buffer{std::vector<char*>(size(source.shape()), nullptr), type.get(), source.space.get()};
   source.read(type.get(), buffer.pointers.data());
@@ -258,7 +258,7 @@ Value head_of(const Source& source) {
   return value;
 }
 
-/// The type of the stored numbers, changed to little-endian.
+/// The number type of the dataset or attribute, but little-endian.
 Handle plain_type(const Source& source) {
   Handle type(H5Tcopy(source.type.get()), H5Tclose, "copy the type of", source.name);
   checked(H5Tset_order(type.get(), H5T_ORDER_LE), "set the byte order of", source.name);
@@ -288,7 +288,7 @@ void create_attribute(hid_t file, const std::string& path, const std::string& na
   checked(H5Awrite(attribute.get(), type.get(), elements(values).data()), "write", object);
 }
 
-/// Adds the name of a link or an attribute to the list `names`. HDF5 calls it for each of them.
+/// Adds a name to the list `names`. HDF5 calls this function for each link of a group or each attribute of an object.
 template <class Info>
 herr_t add_name(hid_t, const char* name, const Info*, void* names) {
   static_cast<std::vector<std::string>*>(names)->emplace_back(name);
@@ -340,8 +340,8 @@ void expect_own_storage(hid_t dataset, const std::string& path) {
   }
 }
 
-/// The address of an object in the file. get: H5Oget_info2, a parameter because the name of its struct changed in HDF5
-/// 1.12.
+/// The address of an object in the file. get: H5Oget_info2. It is a parameter so that the type `Info` is deduced, whose
+/// name changed in HDF5 1.12.
 template <class Info>
 haddr_t address_of(hid_t object, const std::string& path, herr_t (*get)(hid_t, Info*, unsigned)) {
   Info info{};
@@ -355,7 +355,7 @@ constexpr unsigned kCreationOrder = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXE
 // many: HDF5 1.10 frees memory that it never allocated when it reads a damaged heap.
 constexpr unsigned kMostInHeader = 1000;
 
-/// The properties of a new object: it has no times, so that the same content gives the same bytes.
+/// The properties of a new object. Times are not stored, so that the same content gives the same bytes.
 Handle object_properties(hid_t kind) {
   Handle properties = property_list(kind);
   checked(H5Pset_obj_track_times(properties.get(), false), "drop the times of", "a new object");
@@ -371,8 +371,8 @@ Handle group_properties(hid_t kind) {
   return properties;
 }
 
-/// Throws if there is little memory. HDF5 1.10 may crash when it creates a file without enough memory; it needs half of
-/// kRoom.
+/// Throws std::bad_alloc if less than kRoom of address space is left, because HDF5 1.10 may crash when it creates a
+/// file without enough memory. It needs half of kRoom.
 void expect_room_for_file() {
   constexpr std::size_t kRoom = std::size_t{8} << 20U;
   if (!has_address_space(kRoom)) throw std::bad_alloc();
@@ -429,7 +429,8 @@ File File::open(const std::string& path) {
                 ")");
   }
   const Handle access = property_list(H5P_FILE_ACCESS);
-  // Result files are replaced, never changed in place, and some file systems have no locks.
+  // No lock is needed, because result files are replaced and never changed in place; and some file systems have no
+  // locks.
   checked(H5Pset_file_locking(access.get(), false, true), "prepare", path);
   checked(H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG), "prepare", path);
   return File(checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), "open", path));
@@ -456,7 +457,8 @@ template <Element T>
 void File::write(const std::string& path, const Shape& shape, std::span<const T> values) {
   POESY_EXPECTS(values.size() == size(shape));
   const Handle creation = object_properties(H5P_DATASET_CREATE);
-  // Small texts stay inside the object's header, which has checksums; elsewhere HDF5 stores only a reference to them.
+  // HDF5 stores texts in a heap, and in the dataset only references to them. In a compact dataset these references are
+  // in the object's header, which has a checksum. The header has room for this number of references.
   constexpr std::size_t kHeaderRoom = 2000;
   if (std::is_same_v<T, std::string> && values.size() <= kHeaderRoom) {
     checked(H5Pset_layout(creation.get(), H5D_COMPACT), "choose the layout of", path);
@@ -517,8 +519,8 @@ void File::link(const std::string& existing, const std::string& second) {
 }
 
 void File::expect_plain_tree() const {
-  constexpr int kDeepest = 16;    // depth of groups; results have three levels
-  constexpr int kMostNames = 16;  // names of one dataset, which is read once for each name; results have seven
+  constexpr int kDeepest = 16;    // largest depth of groups; results have three levels
+  constexpr int kMostNames = 16;  // names (links) of one dataset, which is read once for each; results have seven
   struct Group {
     std::string path;
     int depth;

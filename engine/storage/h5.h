@@ -14,8 +14,8 @@ namespace poesy {
 class FileWriter;
 }
 
-/// Functions of HDF5 that result files need, with every call checked and every id closed. Objects are named by their
-/// absolute path. Only this header, h5.cpp and h5_disk.cpp use HDF5. Opening a File turns off HDF5's own error
+/// The functions of HDF5 that result files need. Every call is checked, and every id is closed. Objects are named by
+/// their absolute path. Only this header, h5.cpp and h5_disk.cpp use HDF5. Opening a File turns off HDF5's own error
 /// messages.
 namespace poesy::h5 {
 
@@ -28,8 +28,8 @@ class Error : public std::runtime_error {
 };
 
 /// The exception for a file with a structure that poesy never writes: references to bytes outside the file, or links
-/// that do not form a tree. what() is a clause that names the object. This name comes from the file, so do not trust
-/// it.
+/// that do not form a tree. what() is a clause that names the object. This name comes from the file, so it may contain
+/// anything, such as control characters.
 class StrangeFile : public Error {
  public:
   using Error::Error;
@@ -60,14 +60,14 @@ struct Value {
   std::vector<std::string> strings;  ///< [size(shape)] the texts
 };
 
-/// An HDF5 file. Numbers are stored little-endian in the width of T, strings with variable length in UTF-8, objects
-/// without times and with their order of creation. Every member throws Error when HDF5 refuses.
+/// An HDF5 file. Numbers are stored little-endian in the width of T, and strings with variable length in UTF-8. Of each
+/// object, the order of creation is stored, but no time. Every member throws Error if a call of HDF5 fails.
 class File {
  public:
   static File in_memory();  ///< An empty file in memory.
-  /// An empty file whose bytes `disk` writes. `disk` must outlive the file and be committed after close(). FileWriter
-  /// keeps errors of the disk until FileWriter::check(). HDF5 itself sees an error only if it reads bytes that could
-  /// not be written before.
+  /// An empty file that is written by `disk`, which must outlive the file, and whose commit() the caller must call
+  /// after close(). FileWriter keeps errors of the disk for FileWriter::check(). HDF5 itself sees an error only if it
+  /// reads back from the disk.
   static File on_disk(FileWriter& disk);
   /// An existing plain file, read-only. Throws Error at once for a folder, a FIFO, a device or a socket.
   static File open(const std::string& path);
@@ -76,7 +76,7 @@ class File {
   File& operator=(File&&) = delete;
   ~File();
 
-  void close();  ///< Writes all remaining data to the disk. Afterwards the file may only be destroyed.
+  void close();  ///< Writes all remaining data. Afterwards the object may only be destroyed.
 
   void make_group(const std::string& path);  ///< Creates a group. Its parent groups must exist.
   /// Creates a dataset. Precondition: values.size() == size(shape).
@@ -90,18 +90,19 @@ class File {
   /// Creates a scalar attribute of the object at `path`.
   template <Element T>
   void set_attribute(const std::string& path, const std::string& name, const T& value);
-  /// Creates an attribute of the object at `path` that is a list.
+  /// Creates an attribute of the object at `path` with a list of values.
   template <Element T>
   void set_attribute(const std::string& path, const std::string& name, std::span<const T> values);
-  void make_scale(const std::string& path);  ///< Makes a one-dimensional dataset a dimension scale.
-  /// Attaches a scale to one axis of a dataset.
+  void make_scale(const std::string& path);  ///< Turns a one-dimensional dataset into a dimension scale.
+  /// Attaches a dimension scale to one axis (from 0) of a dataset.
   void attach_scale(const std::string& dataset, std::size_t axis, const std::string& scale);
   void link(const std::string& existing, const std::string& second);  ///< Gives an object a second name (hard link).
 
   /// Throws StrangeFile unless everything that can be reached from the root is in this file. The links must be hard
   /// links. Values must not be in other files or be views of other datasets, and must need only HDF5's own filters.
   /// Groups must form a tree of limited depth, so that a program that follows links comes to an end. The function reads
-  /// no value. For a file from an unknown source, call it before reading anything except attributes of the root.
+  /// no values. Call this function before anything except attributes of the root is read from a file of an unknown
+  /// source.
   void expect_plain_tree() const;
 
   bool exists(const std::string& path) const;    ///< Returns true if there is an object at this path.
@@ -121,22 +122,23 @@ class File {
   template <Element T>
   std::vector<T> attribute(const std::string& path, const std::string& name) const;
   Value value(const std::string& path) const;  ///< A dataset as it is stored.
-  Value head(const std::string& path) const;   ///< A dataset as value(), but without its elements.
-  /// Passes the `numbers` of value() to take() slice by slice. Slices are small if the dataset is contiguous in the
-  /// file; otherwise there is one slice. Precondition: a dataset of numbers.
+  Value head(const std::string& path) const;   ///< Like value(), but without the elements.
+  /// Passes the bytes of a dataset's numbers (Value::numbers) to take(), slice by slice. A slice has at most 4 MiB if
+  /// the dataset is contiguous in the file; otherwise the whole dataset is one slice. Precondition: the dataset has
+  /// numbers.
   void read_slices(const std::string& path, const std::function<void(std::span<std::byte>)>& take) const;
   Value attribute_value(const std::string& path, const std::string& name) const;  ///< An attribute as it is stored.
 
  private:
   explicit File(std::int64_t id);
 
-  std::unique_ptr<Disk> disk_;  // null unless the file is a new one on a disk
+  std::unique_ptr<Disk> disk_;  // null for a file in memory or an existing file
   std::int64_t id_;
 };
 
 /// Lets HDF5 free its memory, as at the end of the program. Precondition: there is no File.
 void close_library();
 
-std::string library_version();  ///< The version of the HDF5 library in use, "1.10.8".
+std::string library_version();  ///< The version of the HDF5 library in use, such as "1.10.8".
 
 }  // namespace poesy::h5

@@ -16,11 +16,11 @@
 namespace poesy::h5 {
 namespace {
 
-/// The driver's data of a file that HDF5 has open.
+/// The data of this driver for one file that HDF5 has open.
 struct OpenFile : H5FD_t {
   std::shared_ptr<FileWriter*> writer;
-  haddr_t allocated = 0;  ///< HDF5's "end of allocation": where the file will end
-  haddr_t end = 0;        ///< end of the bytes that are written
+  haddr_t allocated = 0;  ///< HDF5's "end of allocation": final length of the file, bytes
+  haddr_t end = 0;        ///< length of the file so far, bytes
 };
 
 /// The data of this driver that HDF5 stores in access properties, and passes to open_file().
@@ -44,8 +44,8 @@ herr_t close_file(H5FD_t* file) {
   return 0;
 }
 
-/// The features of this driver: those features of HDF5's own drivers for memory and disk that influence which bytes are
-/// written. So all drivers write the same bytes.
+/// Declares the features of this driver. They are those features of HDF5's own drivers for memory and disk that
+/// influence which bytes are written, so that all drivers write the same bytes.
 herr_t features(const H5FD_t*, unsigned long* flags) {
   *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
            H5FD_FEAT_AGGREGATE_SMALLDATA | H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;

@@ -25,7 +25,7 @@ constexpr std::string_view kUnfinished = "# unfinished";
 constexpr std::string_view kUnknown = "unknown";
 constexpr const char* kRemedy = "name another folder with -d, or move it away";
 
-/// The inode of this file; 0 if there is no file. If a file is replaced, its inode changes.
+/// The inode number of a file; 0 if there is no file. It changes when the file is replaced.
 ino_t file_at(const std::string& path) {
   struct stat found {};
   return ::lstat(path.c_str(), &found) == 0 ? found.st_ino : 0;
@@ -74,7 +74,7 @@ void OutputFolder::read_manifest() {
   }
 }
 
-/// Throws InputError if this file must not be replaced or removed. Precondition: it exists.
+/// Throws InputError if this file must not be replaced or removed. Precondition: the file exists.
 void OutputFolder::check(const std::string& name) const {
   const auto refuse = [&](const std::string& problem) { throw InputError({.file = file(name)}, problem, kRemedy); };
   std::error_code ignored;
@@ -129,7 +129,7 @@ void OutputFolder::remove(const std::set<std::string>& names) const {
   }
 }
 
-/// The end of the message after a failure: how many of the claimed files have been written.
+/// The last part of the message after a failure: how many of the claimed files were replaced.
 std::string OutputFolder::what_is_there() const {
   const auto is_new = [&](const auto& claimed) { return file_at(file(claimed.first)) != claimed.second; };
   const auto written = static_cast<std::size_t>(std::ranges::count_if(claimed_, is_new));

@@ -26,7 +26,8 @@ namespace {
 
 constexpr const char* kOther = "give a result file written by poesy";
 /// A child process gets one more second of processor time for each kBytesASecond bytes of a file, and one more second
-/// of wall time for each kBytesAWaitedSecond bytes. This is enough for a slow disk, and ten times what hashing takes.
+/// of wall time for each kBytesAWaitedSecond bytes. This is enough for a slow disk, and ten times as long as hashing
+/// takes.
 /// @{
 constexpr std::uintmax_t kBytesASecond = std::uintmax_t{16} << 20U;
 constexpr std::uintmax_t kBytesAWaitedSecond = std::uintmax_t{4} << 20U;
@@ -49,12 +50,12 @@ h5::File open_hdf5(const std::string& path) {
   }
 }
 
-/// The type of the file; empty if poesy did not write it.
+/// The value of the attribute `filetype` of the root; empty if there is none, so that poesy did not write the file.
 std::string filetype_of(const h5::File& file) {
   try {
     return file.has_attribute("/", "filetype") ? text_attribute(file, "filetype") : "";
   } catch (const h5::Error&) {
-    return "";  // the attribute exists but is not a text
+    return "";  // the attribute is not a text
   }
 }
 
@@ -92,8 +93,8 @@ rlim_t stored_bytes(const std::string& path) {
   return file.is_open() ? file.stored_bytes() : 0;
 }
 
-/// Messages of a child to its parent: that it succeeded, and that it had too little memory. Any other message is the
-/// text of a FileError.
+/// Messages of a child process to its parent: kEndedWell if it succeeded, kNoMemory if it had too little memory. Any
+/// other message is the text of a FileError.
 constexpr std::string_view kEndedWell = "+";
 constexpr std::string_view kNoMemory = "-";
 
@@ -102,7 +103,8 @@ constexpr std::string_view kNoMemory = "-";
                   "try again when fewer processes run");
 }
 
-/// Lowers a limit of this process. If the limit is exceeded, the process is killed even if it blocks signals.
+/// Lowers the soft limit of this process to `most`, and the hard limit to one more: at the hard limit on processor
+/// time, the system kills the process even if it blocks signals.
 void limit(int resource, rlim_t most) {
   rlimit limits{};
   ::getrlimit(resource, &limits);
@@ -130,8 +132,8 @@ void send(const Descriptor& to, std::string_view text) {
   }
 }
 
-/// Does the work of the child process. It ends without destructors and exit handlers, because these belong to the
-/// parent.
+/// Does the work of the child process. The process ends without destructors and exit handlers, because those are for
+/// the parent.
 [[noreturn]] void live_as_child(const Descriptor& to, rlim_t file_bytes, const std::function<void()>& read) {
   confine(file_bytes);
   try {
@@ -142,13 +144,13 @@ void send(const Descriptor& to, std::string_view text) {
   } catch (const std::bad_alloc&) {
     send(to, kNoMemory);
   } catch (...) {
-    // The parent gets no message and takes this as a crash.
+    // Sends nothing, which the parent takes as a crash.
   }
   ::_exit(0);
 }
 
-/// Reads a pipe until its other end is closed. None if that takes longer than `seconds`. Time while this process is
-/// stopped does not count.
+/// Reads a pipe until the other end is closed. Returns none if that takes longer than `seconds`, not counting time in
+/// which this process is stopped.
 std::optional<std::string> receive(const Descriptor& from, std::uintmax_t seconds) {
   constexpr std::uintmax_t kInASecond = 10;
   constexpr int kMilliseconds = 1000 / static_cast<int>(kInASecond);
@@ -166,7 +168,7 @@ std::optional<std::string> receive(const Descriptor& from, std::uintmax_t second
   return std::nullopt;
 }
 
-/// The exit status of a child; 0 if it cannot be determined.
+/// Waits for a child process and returns its wait status; 0 if it cannot be determined.
 int status_of(pid_t child) {
   int status = 0;
   while (::waitpid(child, &status, 0) < 0) {
@@ -175,8 +177,8 @@ int status_of(pid_t child) {
   return status;
 }
 
-/// Throws if the memory limit of this process is below the memory that a child may need for an intact file, because
-/// HDF5 may crash without memory.
+/// Throws FileError if the memory limit of this process is below the memory that reading an intact file may take. A
+/// failed child is then no sign of damage, because HDF5 may crash without memory.
 void refuse_for_little_memory(const std::string& path, rlim_t file_bytes) {
   constexpr rlim_t kMega = 1'000'000;
   const rlim_t most = address_space() + kTrialBytes + 16 * file_bytes;
@@ -229,7 +231,7 @@ std::string text_attribute(const h5::File& file, const std::string& name) {
 }
 
 bool is_out_of_memory(const std::exception& error) {
-  // The texts are those of H5E_NOSPACE, and the messages of H5MM_malloc and its callers.
+  // These are the texts of H5E_NOSPACE, and of the messages of H5MM_malloc and its callers.
   const std::string_view text = error.what();
   return text.find("memory allocation failed") != std::string_view::npos ||
          text.find("unable to allocate memory") != std::string_view::npos ||

@@ -24,16 +24,16 @@ inline constexpr std::int64_t kMajorVersion = 1;
 inline constexpr std::int64_t kMinorVersion = 0;
 
 /// Opens a result or a shard. Throws FileError if the file is of another type, has another major version, or is not a
-/// plain tree (h5::File::expect_plain_tree). So callers never read anything outside the file. Throws h5::Error if HDF5
+/// plain tree (h5::File::expect_plain_tree). So callers never read data outside the file. Throws h5::Error if HDF5
 /// reports that the file is damaged.
 h5::File open_poesy_file(const std::string& path);
 
 /// The advice for a damaged file.
 inline constexpr const char* kDamagedRemedy = "take another copy, or run the study again";
 
-inline constexpr unsigned long kTrialSeconds = 5;      ///< processor time that a child may take to read a file, s
-inline constexpr unsigned long kTrialWaitSeconds = 9;  ///< wall time that a child may take to read a file, s
-/// Memory that a child may take in addition to the program's, in bytes.
+inline constexpr unsigned long kTrialSeconds = 5;      ///< s, processor time of the child in trial_read()
+inline constexpr unsigned long kTrialWaitSeconds = 9;  ///< s, wall time of the child in trial_read()
+/// Bytes of memory that the child in trial_read() may take in addition to those of the program.
 inline constexpr unsigned long kTrialBytes = 1UL << 28U;
 
 /// Calls read() in a child process, so that a crash does not end this process. Returns if the child succeeded.
@@ -41,22 +41,24 @@ inline constexpr unsigned long kTrialBytes = 1UL << 28U;
 /// With a damaged file, HDF5 1.10 may crash, loop, ask for all memory, or corrupt its heap and crash later, before it
 /// reports an error. The child is a copy of this process, so if read() succeeds there, it succeeds here. The limits of
 /// the child are: processor time, kTrialSeconds plus one second for each 16 MiB of the file; wall time, wait_seconds
-/// plus one second for each 4 MiB; memory in addition to what it has at the start, kTrialBytes plus 16 bytes for each
-/// byte of the file (only if /proc tells what it has). The child prints nothing.
+/// plus one second for each 4 MiB; additional memory, kTrialBytes plus 16 bytes for each byte of the file (not limited
+/// if /proc does not tell how much memory the child already has). The child prints nothing.
 ///
 /// Throws the FileError that read() threw. Also throws FileError if the child ran out of memory (std::bad_alloc), did
-/// not finish, or could not be started. Memory runs out if this process may not take enough, or if a damaged file asks
-/// for too much. Precondition: no other thread holds a lock that read() takes (locks of the allocator are allowed).
+/// not finish, or could not be started. Memory runs out if the limit of this process is too low, or if a damaged file
+/// asks for too much. Precondition: no other thread holds a lock that read() takes (locks of the allocator are
+/// allowed).
 void trial_read(const std::string& path, const std::function<void()>& read,
                 unsigned long wait_seconds = kTrialWaitSeconds);
 
-/// The value of an attribute of the root that is a text.
+/// The text in an attribute of the root. Throws h5::Error if it is not one text.
 std::string text_attribute(const h5::File& file, const std::string& name);
 
-/// The text of the mechanism file in a result or shard; empty if the mechanism is not from a file.
+/// The text of the mechanism file, which a result or shard contains; empty if the mechanism is not from a file.
 std::string mechanism_text(const h5::File& file);
 
-/// Throws FileError, which names the actual type, if the file is not of the type `filetype`.
+/// Throws FileError if the file is not of the type `filetype` (kResultFile or kShardFile). The message names the actual
+/// type.
 void expect_filetype(const std::string& path, const h5::File& file, std::string_view filetype);
 
 /// Returns true if HDF5 failed because it ran out of memory.
@@ -66,7 +68,7 @@ bool is_out_of_memory(const std::exception& error);
 void check_readable(const std::string& path);
 
 /// Opens a file that poesy wrote and returns use(file). HDF5 may crash on a damaged file, so use() runs in another
-/// process first. Any error that HDF5 reports means a damaged file.
+/// process first. An error that HDF5 reports is thrown as a FileError for a damaged file.
 template <class Use>
 auto with_poesy_file(const std::string& path, const Use& use) {
   const auto open_and_use = [&] {
@@ -79,7 +81,7 @@ auto with_poesy_file(const std::string& path, const Use& use) {
       throw;
     } catch (const std::exception& error) {
       // This also catches exceptions that do not come from HDF5, for instance if a list is empty or a shape is too
-      // large. The message may quote the file.
+      // large. The message may contain text from the file.
       if (is_out_of_memory(error)) throw std::bad_alloc();
       throw FileError(path, "is damaged: " + printable(error.what(), 300), kDamagedRemedy);
     }

@@ -63,7 +63,7 @@ std::string shown_factors(const TemplateLines& lines, const Study& study) {
          lines.explained("analysis", "factors", fmt::format("factors = \"{}\"", usual));
 }
 
-/// The content of the key `samples` if it is a table, which asks for adaptive samples.
+/// The keys of the table [analysis.samples], with which a study asks for adaptive samples.
 struct Adaptive {
   std::size_t min = AdaptiveSamples().min;
   std::size_t max = 0;
@@ -137,8 +137,8 @@ void read_samples(const StudyValue& value, Study& study, const Reading& reading)
             "write the level of the intervals once");
 }
 
-/// The key `samples` as lines of text. Each key of adaptive samples has its own line, so that a comparison of two
-/// studies line by line shows which key differs.
+/// The key `samples` as lines of the resolved text. Each key of adaptive samples has its own line, so that a
+/// line-by-line comparison of two studies shows which key differs.
 std::string samples_lines(const Study& study) {
   const Analysis& analysis = study.analysis;
   if (!analysis.adaptive) return fmt::format("samples = {}\n", analysis.samples);
@@ -181,8 +181,8 @@ const InnerRows<Background>& background_keys() {
   return keys;
 }
 
-/// Reads the background (errors that are constant while others vary). By default, its errors are as large as the
-/// study's errors of the same dimension.
+/// Reads the background (errors that are constant while others vary). By default, a constant error equals the standard
+/// deviation of the study's errors of the same dimension.
 void read_background(const StudyValue& value, Study& study, const Reading& reading) {
   const StudySection section = value.section();
   Background background{.factors = {},
@@ -214,7 +214,7 @@ std::string shown_background(const TemplateLines& lines, const Study& study) {
                                                   : "# background = { factors = \"all\" }\n");
 }
 
-/// Reads the key `calibrated`. build_model() checks whether the model can be calibrated.
+/// Reads the key `calibrated`. build_model() checks later whether the model supports it.
 void read_calibrated(const StudyValue& value, Study& study, const Reading&) {
   study.mechanism.calibrated = value.yes_or_no();
   study.mechanism.calibrated_place = value.place();
@@ -222,7 +222,7 @@ void read_calibrated(const StudyValue& value, Study& study, const Reading&) {
 
 std::string calibrated_line(const Study& study) { return study.mechanism.calibrated ? "calibrated = true\n" : ""; }
 
-/// The template's line of the key `calibrated`; empty for models that cannot be calibrated.
+/// The template's line of the key `calibrated`; empty for models whose drives cannot be corrected.
 std::string shown_calibrated(const TemplateLines& lines, const Study& study) {
   return study.model().separation ? lines.usual("analysis", "calibrated") : "";
 }
@@ -321,8 +321,8 @@ bool has_own_row(const StudyKind& kind, std::string_view name) {
   return std::ranges::count(own_rows(kind), name, &StudyRow::name) > 0;
 }
 
-/// Completes the shared keys of [analysis]: lists for each key the kinds to which it applies, and describes the key
-/// `kind`. In these lists, kinds that have the key `factors` come first.
+/// Completes the shared keys of [analysis] for the reference: sets `only_for` of each key to the kinds of study that
+/// have the key, and describes the key `kind`. In `only_for`, kinds that have the key `factors` come first.
 void describe_kinds(StudyRows& table, std::span<const StudyKind* const> kinds) {
   std::vector<const StudyKind*> listed(kinds.begin(), kinds.end());
   std::stable_partition(listed.begin(), listed.end(), [](const StudyKind* kind) { return kind->has_key("factors"); });
@@ -337,8 +337,8 @@ void describe_kinds(StudyRows& table, std::span<const StudyKind* const> kinds) {
   for (const StudyKind* kind : kinds) row.value.words.push_back({kind->name, kind->asks});
 }
 
-/// The factors that vary by default, in words: for each kind with a usual set of factors the name of this set, followed
-/// by the default if the model lacks the set.
+/// The factors that vary by default, in words: for each kind with StudyKind::usual_factors the name of this set, then
+/// the default of all other studies.
 std::string usual_factors_text(std::span<const StudyKind* const> kinds) {
   std::string text;
   for (const StudyKind* kind : kinds) {

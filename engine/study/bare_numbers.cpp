@@ -17,12 +17,13 @@
 namespace poesy {
 namespace {
 
-/// A number is doubtful if it is more than this many times the usual size of an error.
+/// A number is doubtful if its magnitude is more than this many times the usual size.
 constexpr double kFarBeyond = 10.0;
 constexpr double kRounding = 1e-9;  ///< tolerance at the ends of a workspace, as a share of its range
 constexpr int kDigits = 6;
 
-/// A line that doubts a column without a unit: "FILE: z has no unit, so its numbers are in m: FOUND; ...".
+/// The warning about a column without a unit: "FILE: z has no unit, so its numbers are in m: FOUND; ...". found: what
+/// is doubtful, as a clause.
 std::string line(std::string_view file, std::string_view column, Dimension dimension, const std::string& found) {
   return fmt::format(
       "{}: {} has no unit, so its numbers are in {}: {}; if they are not, name their unit in the first line, e.g. '{} "
@@ -30,8 +31,8 @@ std::string line(std::string_view file, std::string_view column, Dimension dimen
       printable(file), printable(column), si_unit(dimension), found, printable(column), display_unit(dimension).name);
 }
 
-/// A clause that says that a value is more than kFarBeyond times the size `usual`. Both are in SI. whose: what has the
-/// usual size, in words.
+/// A clause that says that a value is more than kFarBeyond times the size `usual`, both in SI. whose: noun phrase for
+/// `usual`, such as "the size of the workspace".
 std::string beyond_text(double value, Dimension dimension, double usual, std::string_view whose) {
   return fmt::format("one is {}, more than {} times {} ({})", readable_text({value, dimension}, kDigits), kFarBeyond,
                      whose, readable_text({usual, dimension}, kDigits));
@@ -57,8 +58,8 @@ double size_of_workspace(const ModelDescription& model) {
   return std::sqrt(squares);
 }
 
-/// The measured deviation or distance, or the measured coordinate minus the pose's coordinate, SI; none if the file's
-/// pose does not contain this coordinate.
+/// The number to compare with errors, SI: a measured deviation or distance itself, but for a measured coordinate its
+/// difference from the pose's coordinate. None if the pose in the file does not have this coordinate.
 std::optional<double> departure(const MachineValue& value, const PoseTable& poses, const ModelDescription& model) {
   if (value.column != MachineColumn::actual) return value.value;
   const auto own = std::ranges::find(model.pose_coordinates, value.quantity, &PoseCoordinate::name);
@@ -67,8 +68,8 @@ std::optional<double> departure(const MachineValue& value, const PoseTable& pose
          poses.points[PoseIndex(value.row)][static_cast<std::size_t>(own - model.pose_coordinates.begin())];
 }
 
-/// The column without a unit on which this coordinate of a pose depends; empty if there is none. If the table has
-/// columns of a chart, a coordinate of the pose depends on all of them.
+/// The first column without a unit on which this coordinate of a pose depends; empty if all have units. If the table
+/// has the coordinates of a chart (PoseChart), a coordinate of the pose depends on all of them.
 std::string bare_column_of(const PoseTable& table, const std::string& coordinate) {
   if (table.chart) return table.bare.empty() ? std::string() : table.bare.front();
   return std::ranges::find(table.bare, coordinate) == table.bare.end() ? std::string() : coordinate;

@@ -8,13 +8,13 @@
 #include "engine/study/study.h"
 #include "engine/study/table_file.h"
 
-/// Checks of numbers in tables. Numbers without a unit in the first line are read as SI. If numbers look as if the user
-/// meant another unit or sign, each function returns a warning that begins with the table's name; otherwise it returns
-/// an empty text.
+/// Checks of numbers in tables. Numbers of a column without a unit in the first line are read as SI. If such numbers
+/// look as if the user meant another unit or sign, the functions return a warning that begins with the name of the
+/// file; otherwise an empty text.
 namespace poesy {
 
-/// Warns of poses outside the mechanism's workspace, also if the table states units: a sign may be lost. poses: the
-/// poses of the table, or poses that are interpolated between the points of the table.
+/// Warns of poses outside the mechanism's workspace, even if the table states units, because a sign may be wrong.
+/// poses: the poses of the table, or poses that are interpolated between the points of the table.
 std::string outside_pose_text(std::string_view file, const PoseTable& table, const PoseSet& poses,
                               const ModelDescription& model);
 
@@ -22,16 +22,17 @@ std::string outside_pose_text(std::string_view file, const PoseTable& table, con
 /// (workspace_doubts()), one line for each warning. poses: the poses that the study selects.
 std::vector<std::string> doubts_of(const Study& study, const SelectedPoses& poses);
 
-/// Warns of an error that is more than ten times as large as the size that the study gives this error (error_size()).
+/// Warns of an error in a column without a unit that is more than ten times as large as the study's errors of this
+/// factor (error_size()).
 std::string bare_error_text(std::string_view file, const ErrorTable& table, const Study& study);
 
-/// Warns of measurements of a machine that look too large. A deviation, its standard deviation, and the distance from a
-/// measured place to its pose should be at most ten times as large as the study's largest error of the same dimension.
-/// A measured distance should be at most ten times as long as the workspace.
+/// Warns of measured values in columns without a unit that look too large. A deviation, a standard deviation, and the
+/// difference between a measured and a commanded coordinate should be at most ten times the study's largest error of
+/// the same dimension. A measured distance should be at most ten times the diagonal of the workspace.
 std::string bare_measurement_text(std::string_view file, const MachineFile& measurements, const Study& study);
 
-/// Warns of a measured value that is more than ten times as large as the size of `usual`, the distribution of the
-/// study's other errors of this dimension.
+/// Warns of a measured value, in a column without a unit, that is more than ten times as large as the errors of `usual`
+/// (error_size()), the distribution of the study's other errors of this dimension.
 std::string bare_column_text(std::string_view file, const MeasuredColumn& column, Dimension dimension,
                              const Distribution& usual);
 

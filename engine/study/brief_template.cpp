@@ -20,11 +20,11 @@ constexpr std::size_t kWidth = 120;
 /// Keys that a short template shows even if they state their default.
 constexpr std::array<std::string_view, 9> kOftenChanged{"samples", "select", "count",  "linear", "relative",
                                                         "angular", "draws",  "limits", "yield"};
-/// Keys that a short template leaves out even if they do not state a plain default.
+/// Keys that a short template always leaves out.
 constexpr std::array<std::string_view, 3> kRarelyChanged{"title", "fidelity", "tolerance"};
 
-/// The first key of a template, and the comment that follows it. The comment describes the whole template, because the
-/// first key needs no explanation.
+/// The first key of a template, and the comment after it. Because this key needs no explanation, the comment describes
+/// the whole template.
 constexpr std::string_view kFirstKey = "format";
 constexpr std::string_view kAllKeys =
     "the keys that are usually changed; every key with its explanation: poesy template --full";
@@ -47,7 +47,7 @@ std::string_view first_clause(std::string_view meaning) {
   return clause.ends_with('.') ? clause.substr(0, clause.size() - 1) : clause;
 }
 
-/// The line without the comment after its value. No text value of a template contains "  # ".
+/// The line without the comment after its value. The search for "  # " is safe, because no value in a template has it.
 std::string_view without_comment(std::string_view line) {
   const std::string_view code = line.substr(0, line.find("  # "));
   return code.substr(0, code.find_last_not_of(' ') + 1);
@@ -75,7 +75,7 @@ std::string key_line(const StudyTable* table, std::string_view kind, std::string
   return explained(code, key->name == kFirstKey ? kAllKeys : first_clause(key->meaning));
 }
 
-/// A table of the short template: its header, and the lines that the short template shows.
+/// A table of the short template: its header and its lines.
 struct Block {
   std::string_view header;  ///< "[poses]", "[[analysis.parts]]"; empty for the keys before the first table
   std::vector<std::string> lines = {};
@@ -103,7 +103,7 @@ std::vector<Block> blocks_of(std::string_view full, const StudyTables& tables, s
   return blocks;
 }
 
-/// The lines of a table, written as an inline table on one line.
+/// The lines of a table as an inline table on one line: "{ KEY = VALUE, ... },".
 std::string on_one_line(const Block& block) {
   std::string text;
   for (const std::string& line : block.lines) {

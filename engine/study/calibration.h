@@ -15,43 +15,45 @@
 
 namespace poesy {
 
-/// Errors that a calibration fits by one common number: each of these errors is its weight times this number.
+/// Errors that a calibration fits together by one number. Each of these errors is its own weight times the number.
 struct FittedErrors {
-  std::string name;                       ///< name of the combination, or of the error if there is only one
+  std::string name;                       ///< name of the combination of errors, or of the single error
   std::vector<FactorIndex> factors = {};  ///< fitted errors, at least one, all different
-  std::vector<double> weights = {};  ///< weight of each error, unit of the error per unit of the number, SI; none is 0
-  Dimension dimension;               ///< dimension of the number, which is that of the first error
-  Place place = {};                  ///< place of the error or combination in the key `fit`, for messages
+  /// Weight of each error, SI unit of the error per SI unit of the number; none is 0.
+  std::vector<double> weights = {};
+  Dimension dimension;  ///< dimension of the number, the same as that of the first error
+  Place place = {};     ///< place of the error or combination in the key `fit`, for messages
 };
 
 /// The unknown properties of the measuring device's frame.
 enum class MeasuringFrame {
-  known,   ///< nothing is unknown: the device measures in the base's frame
-  height,  ///< the height at which the device measures zero
-  plane,   ///< height and two slopes of the plane from which the device measures heights
-  rigid    ///< position and orientation of the device's frame
+  known,   ///< nothing: the device measures in the base's frame
+  height,  ///< the height of the device's zero (1 number)
+  plane,   ///< height and two slopes of the plane from which the device measures heights (3 numbers)
+  rigid    ///< position and orientation of the device's frame (6 numbers)
 };
 
 /// The unknown properties of the measured point of the platform.
 enum class MeasuredTarget {
-  known,  ///< nothing is unknown
+  known,  ///< nothing: the point is the tool's tip, or the platform's origin
   point,  ///< the position of the point
-  rigid   ///< the position of the point, and the orientation of the frame of the measured target
+  rigid   ///< position of the point and orientation of the measured target (6 numbers)
 };
 
 /// What is known of the fitted errors before anything is measured.
 enum class PriorKnowledge {
-  none,       ///< nothing; the fit is least squares
-  tolerances  ///< the distributions in [errors]; the fit is Bayesian
+  none,       ///< nothing; the errors are fitted by least squares
+  tolerances  ///< their distributions in [errors], which the fit takes as a Bayesian prior
 };
 
 /// What is known about the standard deviations of measured values.
 enum class NoiseLevel {
-  given,     ///< the stated standard deviations are right
-  estimated  ///< stated standard deviations are right up to a common factor, which the fit estimates from its residual
+  given,  ///< the stated standard deviations are right
+  /// All stated standard deviations are wrong by one common factor, which the fit estimates from its residual.
+  estimated
 };
 
-/// The standard deviation of the measurements of one quantity.
+/// The standard deviation of a single measurement of one quantity.
 struct StatedNoise {
   std::string what;  ///< name of the response, or "distance"
   double sd;         ///< standard deviation, SI, at least 0
@@ -64,7 +66,7 @@ struct ControllerNumber {
   Place place;       ///< place of the expression, for messages
 };
 
-/// Words of the key `measured` that do not name a response.
+/// Words that the key `measured` accepts in addition to names of responses.
 /// @{
 inline constexpr std::string_view kMeasuredDistance = "distance";
 inline constexpr std::string_view kMeasuredPose = "pose";
@@ -72,19 +74,22 @@ inline constexpr std::string_view kMeasuredPose = "pose";
 
 /// The table [analysis.calibration], which says how a machine is calibrated.
 struct CalibrationTable {
-  std::vector<FittedErrors> fit;           ///< numbers that are fitted, linearly independent
-  std::vector<std::string> measured = {};  ///< what a study measures: names of responses, "pose" or "distance"
-  std::vector<StatedNoise> noise = {};     ///< noise of measured quantities
-  std::optional<PoseSelection> poses = std::nullopt;   ///< poses at which a study measures; none: the study's poses
-  std::vector<std::array<std::size_t, 2>> pairs = {};  ///< pairs of poses between which distances are measured
-  std::size_t repeats = 1;                             ///< number of measurements that are averaged to one value
-  MeasuringFrame frame = MeasuringFrame::known;        ///< unknown properties of the measuring device's frame
-  MeasuredTarget target = MeasuredTarget::known;       ///< unknown properties of the measured point of the platform
-  PriorKnowledge prior = PriorKnowledge::none;         ///< what is known of the fitted errors before the measurement
-  NoiseLevel sd = NoiseLevel::given;  ///< how well the standard deviations of measured values are known
+  std::vector<FittedErrors> fit;  ///< the fitted numbers, linearly independent
+  /// What is measured in a simulated calibration: names of responses, "pose" or "distance".
+  std::vector<std::string> measured = {};
+  std::vector<StatedNoise> noise = {};                ///< standard deviations of the measured quantities
+  std::optional<PoseSelection> poses = std::nullopt;  ///< poses of a simulated measurement; none: the study's poses
+  /// Pairs of poses (positions, from 0) between which distances are measured.
+  std::vector<std::array<std::size_t, 2>> pairs = {};
+  std::size_t repeats = 1;                        ///< number of measurements that are averaged to one value
+  MeasuringFrame frame = MeasuringFrame::known;   ///< unknown properties of the measuring device's frame
+  MeasuredTarget target = MeasuredTarget::known;  ///< unknown properties of the measured point of the platform
+  PriorKnowledge prior = PriorKnowledge::none;    ///< what is known of the fitted errors before the measurement
+  NoiseLevel sd = NoiseLevel::given;              ///< how well the standard deviations of measured values are known
   /// Coordinates that the controller commands; empty: the model's pose coordinates.
   std::vector<std::string> coordinates = {};
-  std::vector<std::vector<std::string>> motors = {};  ///< groups of drives that move together; empty: none do
+  /// Groups of drives (names of joints) that one motor moves; empty: each drive has its own.
+  std::vector<std::vector<std::string>> motors = {};
   /// [fitted numbers] The values of the fitted numbers for which the controller already corrected while the machine was
   /// measured, SI; empty: none.
   std::vector<double> present = {};

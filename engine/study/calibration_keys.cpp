@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::int64_t kMostRepeats = 1'000'000;
 constexpr std::int64_t kMostNext = 1000;
-/// The six components of a pose, which the word "pose" in the key `measured` abbreviates.
+/// The six responses for which the word "pose" in the key `measured` stands.
 constexpr std::array<std::string_view, 6> kWholePose{"x", "y", "z", "theta_x", "theta_y", "theta_z"};
 
 /// What the readers of the keys of [analysis.calibration] need in addition to the key's value.
@@ -128,7 +128,7 @@ void read_prior(const StudyValue& value, CalibrationTable& table, const Calibrat
   }
 }
 
-/// Throws InputError if the element names a position, such as tip_x, that the mechanism reports but that is no
+/// Throws InputError if the element names a position, such as tip_x, that the mechanism has as a response but not as a
 /// coordinate of its poses. known: all coordinates that a controller may command.
 void refuse_position(const StudyValue& element, const Study& study, const std::vector<std::string_view>& known) {
   const ModelDescription& model = study.model();
@@ -428,8 +428,8 @@ std::string calibration_lines(const Study& study) {
   return text;
 }
 
-/// Comment lines of a template that show a calibration of one error; empty if the model reports no displacement that
-/// can be measured, or has no errors.
+/// Comment lines of a template with a calibration of one error as an example; empty if the model has no errors, or no
+/// response that can be measured (measurable()).
 std::string shown_calibration(const TemplateLines& lines, const Study& study) {
   const ModelDescription& model = study.model();
   const std::vector<std::string_view> known = measurable(model);

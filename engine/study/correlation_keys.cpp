@@ -14,8 +14,8 @@
 namespace poesy {
 namespace {
 
-/// The word in a study file that asks for the correlations of measured parts. With it, each line of the measured table
-/// belongs to one part.
+/// The word in a study file that asks for the rank correlations of measured parts, which are computed from a file with
+/// one line for each part.
 constexpr std::string_view kAsMeasured = "as measured";
 
 const InnerRows<CorrelatedErrors>& block_keys() {
@@ -40,14 +40,14 @@ const InnerRows<CorrelatedErrors>& block_keys() {
   return keys;
 }
 
-/// Columns of one file in which each line has the measured errors of one part.
+/// The columns of one file from which errors take measured values. Each line of the file belongs to one part.
 struct MeasuredTogether {
   std::string file;  ///< name of the file in the study
   std::vector<FactorIndex> factors;
   std::vector<std::string> columns;
 };
 
-/// The columns of files from which [errors.override] takes distributions, grouped by file.
+/// The columns from which [errors.override] takes distributions, grouped by file.
 std::vector<MeasuredTogether> measured_together(const StudySection& errors, const ModelDescription& model) {
   std::vector<MeasuredTogether> tables;
   const StudySection override = errors.section("override");
@@ -63,8 +63,8 @@ std::vector<MeasuredTogether> measured_together(const StudySection& errors, cons
   return tables;
 }
 
-/// The correlation matrix [k x k] of the normal scores of a table's k columns. An entry is 2 sin(pi r / 6), where r is
-/// the rank correlation (Spearman) of two columns.
+/// The correlation matrix [columns x columns] of the normal scores of a table's columns. An entry is 2 sin(pi r / 6)
+/// for two columns with the rank correlation r (Spearman).
 std::vector<double> correlation_of(const MeasuredTogether& table, const StudySection& errors,
                                    const ModelDescription& model) {
   const std::string path = beside_study(errors.place(), table.file);
@@ -92,7 +92,8 @@ void check_definite(const StudyValue& value, std::span<const double> correlation
              "take smaller correlations, or leave out an error that follows from the others");
 }
 
-/// Reads a square matrix with `size` rows, and checks that its entries are correlations.
+/// Reads a correlation matrix [size x size]. Throws InputError if it is not symmetric, an entry is beyond 1 or -1, or
+/// the diagonal is not 1.
 std::vector<double> read_matrix(const StudyValue& value, std::size_t size) {
   const std::string remedy = fmt::format("write {} rows of {} numbers, in the order of factors", size, size);
   std::vector<double> matrix;
@@ -114,7 +115,7 @@ std::vector<double> read_matrix(const StudyValue& value, std::size_t size) {
   return matrix;
 }
 
-/// The columns from which these factors take their distributions. Throws InputError unless one file has all of them.
+/// The columns from which these factors take their distributions. Throws InputError if they are not all in one file.
 MeasuredTogether columns_of(const StudyValue& value, std::span<const FactorIndex> factors, const StudySection& errors,
                             const ModelDescription& model) {
   MeasuredTogether asked;

@@ -9,7 +9,7 @@
 namespace poesy {
 namespace {
 
-/// A title with a known unit in parentheses, "z (mm)", written as "z [mm]"; empty for other titles.
+/// The title with its unit in brackets, "z [mm]", if it has a known unit in parentheses, "z (mm)"; otherwise empty.
 std::string with_brackets(std::string_view title) {
   const std::size_t open = title.rfind('(');
   if (open == std::string_view::npos || !title.ends_with(')')) return {};

@@ -20,11 +20,12 @@ struct CsvTitle {
   std::optional<std::string_view> unit;  ///< unit as written; none if there are no brackets
 };
 
-/// The size of a column's unit in SI; 1 if the title has no unit. Throws InputError at the cell if the unit is unknown
-/// or is not a unit of this dimension.
+/// The factor that converts numbers of the column to SI; 1 if the title has no unit. Throws InputError at the cell if
+/// the unit is unknown or is not a unit of this dimension.
 double size_of_unit(const CsvCell& cell, const CsvTitle& title, Dimension dimension);
 
-/// Throws InputError if an unknown title has its unit in parentheses, or begins with the sign of a comment.
+/// Throws InputError if a title that the table does not know has its unit in parentheses ("z (mm)"), or begins with
+/// "#", the sign of comments in other programs.
 void refuse_other_tables(const CsvCell& cell);
 
 /// Throws InputError if a line does not have this number of cells. columns: the number of columns of the table.

@@ -19,8 +19,8 @@ namespace {
 
 using Shape = Distribution::Shape;
 
-/// The smallest size of an error that a study may state, SI. The effect of an error may be nothing but rounding, about
-/// 1e-16 times the error. For an error of this size even the fourth power of such an effect, 1e-184, is far above the
+/// The smallest size of an error that a study may state, SI. If an error has no effect, its responses are rounding
+/// errors of about 1e-16 times the error. Even for an error of this size, their fourth power, 1e-184, is far above the
 /// smallest double, so that no moment of a response underflows.
 constexpr double kSmallest = 1e-30;
 
@@ -30,19 +30,19 @@ constexpr std::size_t kMostMeasured = 10'000;
 /// The distribution of an error as the keys of a study state it.
 struct Parameters {
   Shape shape = Shape::normal;
-  double sigma = 0.0;       ///< standard deviation before the distribution is cut off, SI; 0 if the shape has none
-  double half_width = 0.0;  ///< largest magnitude before shift and mean are added, SI; 0 if the shape has none
-  double shift = 0.0;       ///< half of the errors scatter about -shift, half about +shift; SI
+  double sigma = 0.0;  ///< standard deviation before the distribution is cut off, SI; 0 if the shape has no such key
+  double half_width = 0.0;  ///< largest magnitude before shift and mean are added, SI; 0 if the shape has no such key
+  double shift = 0.0;       ///< the errors scatter about -shift or +shift with probability 1/2 each; SI
   double mean = 0.0;        ///< mean, SI
-  /// Ends of the distribution, SI. If they are stated, take_limits() computes the mean, and half_width or (for a normal
-  /// distribution) sigma, from them.
+  /// The key `limits`: ends of the distribution, SI; none if it is not stated. take_limits() computes from it the mean,
+  /// and half_width or, for a normal distribution, sigma.
   std::optional<SizeLimits> limits = {};
   /// For a normal distribution with limits: distance from the mean to a limit, in standard deviations.
   double sigmas = 0.0;
   Draws draws = Draws::per_machine;
   Dimension dimension = Dimension::length;
-  std::string file = {};            ///< file of the measured values, as the study names it
-  std::string column = {};          ///< column of the file
+  std::string file = {};            ///< name of the file with measured values, as in the study
+  std::string column = {};          ///< title of the column with measured values in this file
   std::vector<double> values = {};  ///< measured values, SI
   std::string doubt = {};           ///< warning about the unit of the measured values; empty if there is none
 };
@@ -73,8 +73,8 @@ Distribution centred_distribution_of(const Parameters& parameters) {
   return measured;
 }
 
-/// Describes a key that states the size of an error. read_size: reads the value, StudyValue::positive_quantity or
-/// half_width.
+/// The KeyValue of a key that states the size of an error. read_size: the function that reads the quantity,
+/// StudyValue::positive_quantity or half_width.
 KeyValue<Parameters> size_at(double Parameters::*member, double (StudyValue::*read_size)(Dimension) const) {
   const auto read = [=](const StudyValue& value, Parameters& parameters) {
     parameters.*member = (value.*read_size)(parameters.dimension);
@@ -106,7 +106,7 @@ double limit_of(const StudyValue& value, Dimension dimension) {
   return value.is_zero() ? 0.0 : value.quantity(dimension);
 }
 
-/// Reads the limits of a size from the designation in a drawing: "217 h6".
+/// Reads the limits of an error from a size with its tolerance zone of ISO 286, as on a drawing: "217 h6".
 SizeLimits read_size_limits(const StudyValue& value, Dimension dimension) {
   if (dimension != Dimension::length) {
     value.fail("is '" + printable(value.text()) + "', but zones of ISO 286 are of lengths",
@@ -260,8 +260,8 @@ bool has_errors_of(Dimension dimension, const ModelDescription& model) {
 }
 
 /// Reads the measured values of a distribution from the file that the study names, if the study is read for a run; for
-/// other uses, files stay closed. usual: the distribution of other errors of this dimension. Returns true if there are
-/// values, from the file or in the study itself.
+/// other uses, files stay closed. usual: the distribution of other errors of this dimension. Returns true if the values
+/// are known, from the file or from the study itself.
 bool take_values(const StudySection& section, StudyUse use, const Distribution& usual, Parameters& parameters) {
   if (section.find("values")) {
     for (const std::string_view key : {"file", "column"}) section.refuse(key, "a distribution with values");
@@ -290,8 +290,8 @@ struct StatedError {
   friend bool operator==(const StatedError&, const StatedError&) = default;
 };
 
-/// Computes mean and size of a distribution from the key `limits`. Throws InputError if other keys state the mean or
-/// the size, too.
+/// Computes the mean and the size (sigma or half_width) of a distribution from the key `limits`, if it is stated.
+/// Throws InputError if other keys state the mean or the size, too.
 void take_limits(const StudySection& section, Parameters& parameters) {
   const bool is_normal = parameters.shape == Shape::normal;
   if (!parameters.limits) {
@@ -320,8 +320,8 @@ void require_sizes(const StudySection& section, const std::string& word, const P
   }
 }
 
-/// A uniform distribution of a size as users write it on a drawing, as a line of a study file. If the size cannot be
-/// read or is not greater than zero, it is an example.
+/// A uniform distribution as TOML, with a half-width that a user wrote as on a drawing, such as "+-0.02 mm". If
+/// `written` cannot be read, or is not greater than zero, an example replaces it.
 std::string uniform_line(std::string_view written, Dimension dimension) {
   std::string size = dimension == Dimension::number ? "0.1 %" : fmt::format("0.02 {}", display_unit(dimension).name);
   for (const std::string_view sign : {"", "+-", "+/-", "\u00b1"}) {
@@ -330,13 +330,13 @@ std::string uniform_line(std::string_view written, Dimension dimension) {
       const std::string_view bare = trimmed(written.substr(sign.size()));
       const Quantity quantity = parse_quantity(bare, dimension);
       if (quantity.dimension == dimension && quantity.si > 0.0) size = bare;
-    } catch (const QuantityError&) {  // the example stays
+    } catch (const QuantityError&) {  // `size` stays the example
     }
   }
   return fmt::format("{{ distribution = \"uniform\", half_width = \"{}\" }}", size);
 }
 
-/// Refuses a size in the place of a distribution.
+/// Throws InputError if the value is a text, such as a size, instead of a table with a distribution.
 void refuse_size(const StudyValue& value, Dimension dimension) {
   if (!value.is_text()) return;
   const std::string written = printable(value.text());
@@ -391,8 +391,8 @@ void read_usual(const StudyValue& value, Study& study, const Reading& reading) {
   set_by_zones(study);
 }
 
-/// The value in [errors.override] for a factor. A key is for the factor if it is the factor's name or a pattern that
-/// matches the name. If several keys are for the factor, the last one in the file counts.
+/// The value in [errors.override] for a factor; none if no key names it. A key names the factor by its name or by a
+/// pattern that matches the name. If several keys name it, the last one in the file counts.
 std::optional<StudyValue> override_of(const StudySection& overrides, const std::string& factor) {
   const auto place = [](const StudyValue& value) { return std::pair(value.place().line, value.place().column); };
   std::optional<StudyValue> last;
@@ -418,8 +418,8 @@ void check_override(const StudySection& overrides, const Study& study) {
   overrides.allow(known, "factor");
 }
 
-/// Reads a value of [errors.override]. usual: distribution and draws of the error if it had no value in
-/// [errors.override]. A table that has only the key `draws` keeps the usual distribution.
+/// Reads a value of [errors.override]. usual: what the error has without this value. If the value has only the key
+/// `draws`, the error keeps the usual distribution.
 StatedError read_own_error(const StudyValue& value, Dimension dimension, StudyUse use, const StatedError& usual,
                            std::vector<std::string>& doubts) {
   if (!value.is_section() || value.section().keys() != std::vector<std::string>{"draws"}) {
@@ -442,13 +442,14 @@ void read_override(const StudyValue& value, Study& study, const Reading& reading
   }
 }
 
-/// The largest number of values in a table of given machines. Every result stores these values, so they must stay few.
+/// The largest number of values (machines times errors) in a table of given machines. Every result stores these values,
+/// so they must stay few.
 constexpr std::size_t kMostGiven = 200'000;
 
-/// A table of given machines in a study: the errors of each machine, which are not drawn.
+/// The table [errors.machines]: the errors of given machines, which are not drawn.
 struct GivenRows {
   std::vector<std::string> columns = {};
-  std::vector<std::vector<double>> rows = {};  ///< values of the machines, one row for each machine, SI
+  std::vector<std::vector<double>> rows = {};  ///< [machines][columns] errors of each machine, SI
 };
 
 KeyValue<GivenRows> columns_value() {
@@ -552,12 +553,12 @@ std::string machines_lines(const Study& study) {
   return text + "]\n";
 }
 
-/// Returns true if the error is stated by given machines and not drawn.
+/// Returns true if given machines state the error with index f, so that it is not drawn.
 bool is_given(const Study& study, std::size_t f) {
   return study.errors.by_factor[f].shape() == Distribution::Shape::given;
 }
 
-/// The values as a TOML list over several lines, because lines of a study file must stay short.
+/// The values as a TOML list over several lines, because a line of a study file may not be too long (parse_toml()).
 std::string values_text(std::span<const double> values, Dimension dimension, ValueText value) {
   constexpr std::size_t kOfLine = 5;
   std::string text = "[";
@@ -595,9 +596,9 @@ std::string error_text(const StatedError& error, Dimension dimension, ValueText 
   return text + " }";
 }
 
-/// The distribution that most factors of this dimension have, and whether it is drawn at each pose or once for each
-/// machine. Factors whose distribution follows from a tolerance zone, and factors of given machines, do not count. The
-/// resolved text states the result once, as `linear` or `angular`.
+/// The distribution that most factors of this dimension have, and whether they are drawn at each pose or once for each
+/// machine. Factors whose distribution follows from a tolerance zone, and factors that given machines state, do not
+/// count. The resolved text states the result once, as `linear` or `angular`.
 StatedError commonest_error(const Study& study, Dimension dimension) {
   const std::vector<Factor>& factors = study.model().factors;
   const std::vector<std::optional<Distribution>> zones = distributions_by_zones(study);
@@ -818,7 +819,7 @@ bool states_size(const StudySection& errors, const Factor& factor) {
   return errors.find(error_kind(factor.dimension)) || override_of(errors.section("override"), factor.name);
 }
 
-/// Throws InputError because an error of a feature varies and nothing says how much.
+/// Throws InputError, because an error of a feature varies although nothing states its size.
 [[noreturn]] static void refuse_missing_size(const Place& place, const std::string& error, const std::string& feature,
                                              bool has_zones) {
   const std::string which = "'" + error + "' of the feature '" + feature + "' varies, ";
@@ -835,7 +836,8 @@ bool states_size(const StudySection& errors, const Factor& factor) {
                    "errors.linear");
 }
 
-/// A warning that the default is the size of these errors, which all have this dimension. Precondition: there is one.
+/// A warning that the study does not state the sizes of these errors, so that they have the default. Precondition:
+/// there is at least one error, and all have this dimension.
 static std::string default_text(std::span<const FactorIndex> errors, Dimension dimension, const Study& study) {
   const std::string& first = study.model().factors[errors.front().value].name;
   const std::string which = errors.size() == 1   ? "of the error " + first

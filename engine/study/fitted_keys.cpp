@@ -12,8 +12,8 @@
 namespace poesy {
 namespace {
 
-/// Throws InputError if a name that the user chooses cannot be used in expressions, or is the name of an error. what:
-/// the named thing, for messages.
+/// Throws InputError if a name that the user chose cannot be used in expressions, or is the name of an error. what:
+/// noun for the named thing in messages.
 void check_own_name(const StudyValue& value, const std::string& own, std::string_view what,
                     const ModelDescription& model) {
   const bool is_plain = std::ranges::all_of(own, [](char c) {
@@ -75,7 +75,8 @@ void check_error_names(const StudySection& section, const Study& study) {
   section.allow(known, "error");
 }
 
-/// Reads the weight of an error of a combination. If several keys name the error, the last one in the file counts.
+/// Reads the weight of an error and adds both to the combination, or replaces the weight that an earlier key gave to
+/// the error.
 void set_weight(const StudyValue& value, FactorIndex factor, FittedErrors& combination, const ModelDescription& model) {
   const Factor& error = model.factors[factor.value];
   if (combination.factors.empty()) combination.dimension = error.dimension;
@@ -162,14 +163,16 @@ void add_named(const StudyValue& value, const std::vector<FittedErrors>& combina
              suggestion(written, known.size() > 40 ? std::span(known).first(40) : std::span(known)));
 }
 
-/// The weights of a combination as a vector with an entry for each factor of the model.
+/// The weights of fitted errors as a vector with an entry for each factor of the model.
 std::vector<double> column_of(const FittedErrors& errors, std::size_t factors) {
   std::vector<double> column(factors, 0.0);
   for (std::size_t n = 0; n < errors.factors.size(); ++n) column[errors.factors[n].value] = errors.weights[n];
   return column;
 }
 
-/// Finds how much of a column is linearly independent of the earlier columns.
+/// Tells by the Gram-Schmidt process how far a column is linearly independent of earlier columns. left() scales the
+/// column to length 1, removes its part along `orthonormal`, returns the length that is left (0 to 1), and scales the
+/// column to length 1 again.
 struct DirectionTest {
   std::vector<std::vector<double>> orthonormal;
 

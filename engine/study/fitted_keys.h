@@ -15,8 +15,8 @@ std::vector<std::pair<std::string, StudyValue>> in_order(const StudySection& sec
 
 /// Reads the fitted errors of [analysis.calibration]: errors, patterns, sets, and combinations that the table defines.
 /// value: the value of the key `fit`. section: the whole table. Throws InputError at the place of the mistake for an
-/// unknown name, for an error that a machine draws anew at each pose, and for a weight without a unit that it needs.
-/// Also throws if the fitted numbers are linearly dependent, because no measurement can separate them.
+/// unknown name, for an error that a machine draws anew at each pose, and for a weight that lacks its unit. Also throws
+/// if the fitted numbers are linearly dependent, because no measurement can separate them.
 std::vector<FittedErrors> read_fitted(const StudyValue& value, const StudySection& section, const Study& study);
 
 }  // namespace poesy

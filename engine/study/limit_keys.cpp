@@ -18,13 +18,14 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The two ends of a limit, SI; an end that the file does not state is infinite.
+/// The two ends of a limit, SI. An end that the file does not state is infinite.
 struct Ends {
   double from = -kInfinity;
   double to = kInfinity;
 };
 
-/// The limit between two ends. If the response has no sign, the limit bounds its magnitude.
+/// Makes the limit with these ends; for a response that is never below zero, a limit on its magnitude. Throws
+/// InputError if the ends are in the wrong order, or cannot limit this response.
 ValueLimit between(const StudyValue& value, const Ends& ends, const Response& response) {
   const auto text = [&](double end) { return readable_text({end, response.dimension}); };
   if (!(ends.from < ends.to)) {
@@ -93,7 +94,7 @@ ValueLimit read_limit(const StudyValue& value, const Response& response) {
   return between(value, {read_end(ends[0], response), read_end(ends[1], response)}, response);
 }
 
-/// A limit as TOML text that reads back to exactly the same limit.
+/// A limit as TOML that is read back as exactly the same limit.
 std::string exact_limit(const ValueLimit& limit, const Response& response) {
   const auto exact = [&](double value) { return exact_value(value, response.dimension); };
   if (limit.is_plain()) return exact(limit.to());

@@ -13,13 +13,14 @@ namespace poesy {
 /// Reads the limits of a study into study.analysis.limits, sorted in the order of the model's responses.
 void read_response_limits(const StudyValue& value, Study& study);
 
-/// The limits as lines of the resolved text, one for each limit.
+/// The limits as lines of the resolved text (the study with every default filled in), one line for each limit.
 std::string response_limits_lines(const Study& study);
 
-/// The description of the tables with limits.
+/// The description of the tables [analysis.limits] and [analysis.limits.RESPONSE].
 StudyTables limit_tables();
 
-/// The place of a limit in the section [analysis], for messages. Precondition: the study was read from this section.
+/// The value that states a limit in the section [analysis], for messages at its place. Precondition: the study was read
+/// from this section.
 StudyValue limit_value(const StudySection& analysis, const Study& study, const ResponseLimit& limit);
 
 /// A limit in words: "0.03 mm", "-0.02 mm to 0.1 mm", "at most 0.1 mm", "a spread of 0.08 mm", "0.02 deg at 99 % of the

@@ -31,14 +31,15 @@ struct FileColumn {
   Role role;
   std::string quantity;  ///< name of the quantity: the title without a prefix such as "deviation_"
   std::string title;     ///< title without the unit
-  double si = 1.0;       ///< size of the column's unit in SI
+  double si = 1.0;       ///< factor that converts the column's numbers to SI
   bool is_bare = false;  ///< true if the column states no unit
   Place place;           ///< place of the title
 
   bool is_measured() const { return role == Role::deviation || role == Role::actual || role == Role::distance; }
 };
 
-/// The pose coordinates that a file must have as columns: either the model's own or those of a chart.
+/// One of the sets of coordinates in which a file may state poses: the model's pose coordinates, or those of a chart
+/// (PoseChart).
 struct PoseHeader {
   std::optional<std::size_t> chart;
   const std::vector<PoseCoordinate>* coordinates;
@@ -140,8 +141,8 @@ bool has(const std::vector<FileColumn>& columns, FileColumn::Role role) {
   return std::ranges::find(columns, role, &FileColumn::role) != columns.end();
 }
 
-/// Throws InputError if no column has measured values, if a standard deviation belongs to no measured column, or if a
-/// column needs another one that is missing.
+/// Throws InputError if no column has measured values, if a column of standard deviations has no measured column, or if
+/// one of the columns `distance`, `to` and `name` lacks another one that it needs.
 void check_columns(const std::vector<FileColumn>& columns, const Place& header) {
   using Role = FileColumn::Role;
   if (std::ranges::none_of(columns, &FileColumn::is_measured)) {
@@ -166,8 +167,8 @@ void check_columns(const std::vector<FileColumn>& columns, const Place& header) 
   }
 }
 
-/// The kind of pose coordinates (PoseHeader) that the file has as columns. Throws InputError if some are missing, or if
-/// the file mixes kinds.
+/// The set of coordinates in which the file states poses. Throws InputError if coordinates of the set are missing, or
+/// if the file mixes sets.
 PoseHeader header_of(const std::vector<FileColumn>& columns, const ModelDescription& model, const Place& place) {
   std::vector<std::string_view> given;
   for (const FileColumn& column : columns) {
@@ -202,7 +203,7 @@ double number_in(const CsvCell& cell, const FileColumn& column) {
                    "write a plain number, or leave the cell empty if it was not measured");
 }
 
-/// A line of a table of measurements. The name in its cell `to` has not yet been replaced by the index of a row.
+/// A line of a table of measurements. The cell `to` still has the name of another row, not its index.
 struct FileRow {
   Place place;
   std::map<std::string, double> pose;
@@ -272,7 +273,7 @@ std::vector<FileRow> read_rows_of_machine(CsvLines& lines, const std::vector<Fil
   return rows;
 }
 
-/// The index of the row that the cell `to` of a row names. Throws InputError if there is no such row, or if the cell
+/// The index of the row that the cell `to` of `row` names. Throws InputError if no row has this name, or if the cell
 /// names its own row.
 std::size_t other_row(const FileRow& row, const std::vector<FileRow>& rows) {
   const std::string wanted(row.to->text);
@@ -286,7 +287,7 @@ std::size_t other_row(const FileRow& row, const std::vector<FileRow>& rows) {
   return static_cast<std::size_t>(found - rows.begin());
 }
 
-/// Adds the values of row `at` to the file, except for a distance, which is added to `distances`.
+/// Adds the measured values of row `at` to `file`, but a distance to `distances`.
 void add_values(const std::vector<FileRow>& rows, std::size_t at, MachineFile& file,
                 std::vector<MachineValue>& distances) {
   const FileRow& row = rows[at];

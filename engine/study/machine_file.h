@@ -14,14 +14,14 @@ namespace poesy {
 /// What a column of a table of measurements contains.
 enum class MachineColumn {
   deviation,  ///< deviation of a response: its measured value minus its commanded value
-  actual,     ///< a measured coordinate of the platform itself
-  distance    ///< the distance from the platform at this row's pose to the platform at the pose of another row
+  actual,     ///< a measured coordinate of the platform or of its tool
+  distance    ///< the distance between the measured point at this row's pose and at another row's pose
 };
 
-/// A value that was measured of a machine.
+/// One measured value of a machine.
 struct MachineValue {
   MachineColumn column;   ///< kind of the column
-  std::string quantity;   ///< what was measured: "z", "tip_x", or "distance"
+  std::string quantity;   ///< name of the measured quantity: "z", "tip_x", or "distance"
   std::size_t row;        ///< index of the row
   std::size_t other = 0;  ///< index of the row to which a distance is measured
   double value = 0.0;     ///< measured value, SI
@@ -37,14 +37,15 @@ struct MachineFile {
   std::vector<std::string> names;  ///< name of each row: "p4", or "row 5" for a row without a name
   /// All values except distances, row by row in the order of the columns, followed by all distances.
   std::vector<MachineValue> values;
-  std::vector<std::string> bare;  ///< titles of columns of values or standard deviations that state no unit
+  /// Titles, without a unit, of the columns of values and standard deviations that state no unit.
+  std::vector<std::string> bare;
 
   /// The value's name in messages: "deviation_z of p4", "distance p1 p4".
   std::string name_of(const MachineValue& value) const;
 };
 
-/// The responses R for which a column deviation_R may exist: the components of the platform's displacement that the
-/// model reports.
+/// The responses of the model that can be measured, each in a column "deviation_RESPONSE": the components of the
+/// displacement of the platform and of its tool.
 std::vector<std::string_view> measurable(const ModelDescription& model);
 
 /// Reads measurements from a CSV file. The first line names all of the model's pose coordinates, or all coordinates of

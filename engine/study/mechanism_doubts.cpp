@@ -19,24 +19,24 @@
 namespace poesy {
 namespace {
 
-/// A value is far from another one if it is more than this many times larger or smaller.
+/// A value is far from the published one if it is more than this many times larger or smaller.
 constexpr double kFar = 10.0;
 
-/// Points count as around another one if their root mean square distance from it is at most this share of the largest
-/// distance of a joint from it.
+/// Points count as around a point p if their root mean square distance from p is at most this share of the distance
+/// from p to the farthest joint.
 constexpr double kAround = 0.05;
 
 bool is_far(double value, double own) {
   if (value == 0.0 || own == 0.0) return false;
   const double ratio = value / own;
-  return ratio < 1.0 / kFar || ratio > kFar;  // also if the signs differ
+  return ratio < 1.0 / kFar || ratio > kFar;  // true also if the signs differ, because then ratio < 0
 }
 
 using Vector = std::array<double, 3>;
 
 double distance(const Vector& a, const Vector& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
-/// A point at home, in the platform's frame.
+/// The position of a point in the platform's frame (m). point: its position at home in the base's frame.
 Vector in_platform(const SketchVector& point, const Sketch& home, const SketchedFrame& platform) {
   Vector found{};
   for (std::size_t k = 0; k < found.size(); ++k) {
@@ -47,15 +47,15 @@ Vector in_platform(const SketchVector& point, const Sketch& home, const Sketched
   return found;
 }
 
-/// The points of the platform whose displacements have responses of their own: the tool as "tip", and named points.
+/// The points of the platform whose displacement is a response: named points, and the tool as "tip".
 std::vector<SketchedPoint> points_with_responses(const Sketch& home) {
   std::vector<SketchedPoint> points = home.points;
   for (const SketchVector& tool : home.tool) points.push_back({"tip", tool});
   return points;
 }
 
-/// Returns true if the response is a displacement of this point of the platform, or a response of the study with such a
-/// term.
+/// Returns true if the response with this index is a displacement of this point of the platform, or if the study
+/// defines it from responses of which one is.
 bool depends_on(const std::string& point, std::size_t response, const Study& study) {
   const std::vector<Response>& responses = study.model().responses;
   const std::string& name = responses[response].name;
@@ -67,14 +67,14 @@ bool depends_on(const std::string& point, std::size_t response, const Study& stu
   return name == point + "_x" || name == point + "_y" || name == point + "_z" || name == point + "_position";
 }
 
-/// The root mean square distance of points of the platform from one of them.
+/// The root mean square distance (m) of points of the platform from the point `from`, in the platform's frame.
 double rms_distance(std::span<const PlatformPoint> points, const Vector& from) {
   double squares = 0.0;
   for (const PlatformPoint& point : points) squares += std::pow(distance(point, from), 2);
   return std::sqrt(squares / static_cast<double>(points.size()));
 }
 
-/// The largest distance of a joint from a point.
+/// The distance (m) from a point to the farthest joint, at home.
 double largest_distance(const Sketch& home, const SketchVector& from) {
   double largest = 0.0;
   for (const auto& limb : home.limbs) {
@@ -143,7 +143,8 @@ std::vector<std::string> size_doubts(const Study& study, const Model& model) {
 }
 
 std::string correction_doubt(const Study& study, const Model& model) {
-  // A correction of six drives moves each point of the platform back, to first order.
+  // If the platform has six degrees of freedom, a correction of the drives moves each of its points back, to first
+  // order.
   constexpr std::size_t kAllFreedoms = 6;
   if (study.model().pose_coordinates.size() == kAllFreedoms) return {};
   const std::vector<PlatformPoint> corrected = model.metric_points();

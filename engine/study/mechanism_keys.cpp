@@ -57,7 +57,8 @@ void read_geometry(const StudyValue& value, Study& study, const Reading&) {
   });
 }
 
-/// Reads loads that replace the loads of the mechanism file, and selects the catalog entry with these loads.
+/// Reads loads that replace the loads of the mechanism file, and makes the catalog entry with these loads the study's
+/// entry.
 void read_load(const StudyValue& value, Study& study, const Reading&) {
   MechanismChoice& choice = study.mechanism;
   if (!choice.entry->with_load) {
@@ -72,7 +73,7 @@ std::string load_lines(const Study& study) {
   return load.empty() ? "" : "\n[mechanism.load]\n" + load;
 }
 
-/// Reads the key `fidelity`. The word "both" sets `compared`, and needs a model with two fidelities.
+/// Reads the key `fidelity`. The word "both" sets MechanismChoice::compared. Only models with two fidelities accept it.
 void read_fidelity(const StudyValue& value, Study& study, const Reading& reading) {
   const ModelDescription& model = study.model();
   if (model.fidelities.empty()) {

@@ -12,7 +12,7 @@ namespace poesy {
 std::optional<OutsidePose> outside_pose(const PoseSet& poses, const ModelDescription& model, double share) {
   for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
     const double width = model.pose_upper[c] - model.pose_lower[c];
-    if (width <= 0.0) continue;  // one value alone says nothing about units or signs
+    if (width <= 0.0) continue;  // a workspace of a single value says nothing about units or signs
     const double margin = share * width;
     const double lower = model.pose_lower[c] - margin;
     const double upper = model.pose_upper[c] + margin;

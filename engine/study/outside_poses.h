@@ -15,17 +15,17 @@ struct OutsidePose {
   std::size_t coordinate;  ///< index of the coordinate in a pose
 };
 
-/// The first coordinate that is outside the workspace by more than this share of the workspace's range, and the first
-/// pose where it is; none if there is none.
+/// The first coordinate that at some pose is outside the workspace by more than `share` of its range in the workspace,
+/// and the first pose where this is so. None if all poses are inside.
 std::optional<OutsidePose> outside_pose(const PoseSet& poses, const ModelDescription& model, double share);
 
-/// A clause that says where such a pose is: "pose 2 has z = 700 mm, outside the workspace from -300 mm to -180 mm".
-/// text: the words for a value in SI.
+/// A clause that says how a pose is outside the workspace: "pose 2 has z = 700 mm, outside the workspace from -300 mm
+/// to -180 mm". text: function that writes a value (SI) as text.
 std::string outside_clause(const OutsidePose& outside, const PoseSet& poses, const ModelDescription& model,
                            std::string (*text)(Quantity));
 
-/// The clause about the first pose that is farther outside the workspace than the workspace is wide, as poses in
-/// another unit are; empty if there is none.
+/// The outside_clause() of the first pose that is farther outside the workspace than the workspace is wide, which
+/// suggests a wrong unit. Empty if no pose is.
 std::string far_outside_clause(const PoseSet& poses, const ModelDescription& model);
 
 }  // namespace poesy

@@ -45,8 +45,8 @@ std::vector<ZoneSlots> zone_slots(const Study& study) {
   return blocks;
 }
 
-/// The uniforms from which the distribution of an error computes the values that given machines have, one for each row
-/// of their table; empty if the error is drawn.
+/// [rows of the table of machines] The uniforms that the distribution of the error (Distribution::given) converts to
+/// the values that given machines have. Empty if the error is drawn.
 std::vector<double> given_uniforms(const ErrorModel& errors, FactorIndex factor) {
   if (errors.by_factor[factor.value].shape() != Distribution::Shape::given) return {};
   const std::vector<double> values = errors.machines->column(factor);

@@ -18,30 +18,30 @@ namespace poesy {
 
 /// The smallest piece of scheduled work: consecutive samples of one slot (see Plan) at one pose.
 struct WorkUnit {
-  std::size_t slot;   ///< index of the varied factor in Plan::factors(); 0 if all vary together
+  std::size_t slot;   ///< index in Plan::factors() of the factor that varies; 0 if all factors vary together
   PoseIndex pose;     ///< index of the pose in the study's list of poses
-  SampleIndex first;  ///< first sample of the unit
+  SampleIndex first;  ///< index of the first sample of the unit
   std::size_t count;  ///< number of samples
 };
 
-/// A block of correlated errors in a plan. Each slot is the index of an error in Plan::factors().
+/// A block of correlated errors in a plan.
 struct CorrelatedSlots {
-  /// Slots of the block's errors.
+  /// Indices of the block's errors in Plan::factors().
   std::vector<std::size_t> slots;
   NormalCopula copula;  ///< joint distribution of the errors, in the order of `slots`
 };
 
 /// The errors of a feature that are drawn together from its tolerance zone.
 struct ZoneSlots {
-  /// Slots of the feature's errors (indices in Plan::factors()), in the order of Feature::errors().
+  /// Indices of the feature's errors in Plan::factors(), in the order of Feature::errors().
   std::vector<std::size_t> slots;
-  drawing::ZoneDraws draws;  ///< draws these errors
+  drawing::ZoneDraws draws;  ///< computes these errors from uniforms
 };
 
 /// All work of a study with drawn errors: an immutable table of work units, in the order in which their results are
-/// merged. A slot is what varies in a unit: one factor if factors vary one by one, all factors if they vary together. A
-/// cell is one slot at one pose; its samples are divided into units. The table depends only on the study, never on
-/// threads or ranks.
+/// merged. A slot is the set of factors that vary in a unit: a single factor if factors vary one by one, otherwise all
+/// factors. A cell is all samples of one slot at one pose; it is divided into units. The table depends only on the
+/// study and the poses, never on threads or ranks.
 class Plan {
  public:
   /// The largest number of samples in a unit. The bound keeps the memory for a unit small.
@@ -50,21 +50,21 @@ class Plan {
   /// The number of units for this number of samples in a cell. The last unit may be smaller.
   static constexpr std::size_t units_for(std::size_t samples) { return (samples + kUnitSamples - 1) / kUnitSamples; }
 
-  /// Makes the plan of a study of drawn errors at these poses. Copies what it needs of the study. Precondition: the
+  /// Makes the plan of a study with drawn errors at these poses. The study need not outlive the plan. Precondition: the
   /// study has a kind.
   Plan(const Study& study, PoseSet poses);
 
   /// The number of slots: the number of factors if they vary one by one, 1 if all vary together.
   std::size_t slots() const { return slots_; }
-  /// The number of cells. They are ordered slot by slot, and pose by pose in each slot.
+  /// The number of cells. Cells are ordered by slot, then by pose.
   std::size_t cells() const { return slots_ * poses_.size(); }
   std::size_t units_per_cell() const { return units_per_cell_; }   ///< The number of units of a cell.
   std::size_t units() const { return cells() * units_per_cell_; }  ///< The number of units of the whole plan.
-  /// The u-th unit of the plan; units are ordered cell by cell, and by samples in each cell.
+  /// The u-th unit of the plan. Units are ordered by cell, then by sample.
   WorkUnit unit(std::size_t u) const;
 
-  /// The number of the first sample of a cell's unit. For the index after the last unit, the number of samples in a
-  /// cell.
+  /// The index of the first sample of the unit with this index in its cell. For the index after the last unit, the
+  /// number of samples in a cell.
   std::size_t first_sample(std::size_t unit) const { return std::min(unit * kUnitSamples, samples_); }
 
   std::size_t samples() const { return samples_; }  ///< The largest number of samples in a cell.
@@ -85,9 +85,10 @@ class Plan {
     const bool is_fixed = draws_ == Draws::per_machine && !is_per_pose(slot);
     return {seed_, Purpose::error_samples, factors_[slot], is_fixed ? PoseIndex(0) : pose};
   }
-  /// Fills a row with the uniforms in [0, 1] from which the errors of factors()[slot] in consecutive samples are
-  /// computed. If the error is drawn, its uniforms come from the stream at its address. If given machines state the
-  /// error, its uniforms follow from the rank of each value among the values of all machines.
+  /// Fills a row with the uniforms in [0, 1] from which transform() computes the errors of factors()[slot]. first:
+  /// index of the first of these consecutive samples. The uniforms of a drawn error come from the stream at its
+  /// address(). For an error that given machines state, they follow from the rank of each machine's value among those
+  /// of all machines.
   void draw_uniforms(std::size_t slot, PoseIndex pose, SampleIndex first, std::span<double> row) const;
   const PoseSet& poses() const { return poses_; }  ///< The poses, in the order of the study.
   /// The factors that vary, as indices in the model's list of factors.
@@ -99,27 +100,26 @@ class Plan {
   std::span<const CorrelatedSlots> correlated() const { return correlated_; }
   /// Returns true if factors()[slot] is in a block of correlated().
   bool is_correlated(std::size_t slot) const;
-  /// Features whose errors are drawn together. Each factor is in at most one feature, and never in correlated() as
-  /// well. The errors of a feature are either all per_pose() or none of them. Empty if errors vary one by one.
+  /// Features whose errors are drawn together from a tolerance zone. Each factor is in at most one feature, and then
+  /// not in correlated(). The errors of a feature are either all per_pose() or none of them. Empty if errors vary one
+  /// by one.
   std::span<const ZoneSlots> zones() const { return zones_; }
   /// Returns true if factors()[slot] is neither correlated nor drawn together with other errors of a feature.
   bool is_drawn_alone(std::size_t slot) const;
-  /// Converts uniforms to errors in place. uniforms: a row for each factor, in the order of factors(), with `count`
-  /// samples each; the numbers become errors, SI. The errors of a correlated block, or of a feature, depend on the
-  /// uniforms of all factors of the block or feature in the same sample.
+  /// Converts uniforms to errors (SI) in place. uniforms: [factors() x count], row-major. In a correlated block, or in
+  /// a feature of zones(), each error depends on the uniforms of all errors of the block or feature in the same sample.
   void transform(std::span<double> uniforms, std::size_t count) const;
-  /// Converts only the rows of the errors in per_pose(), like transform(), and leaves the other rows as they are.
+  /// Does the same as transform(), but only for the rows of the errors in per_pose(); other rows stay unchanged.
   void transform_per_pose(std::span<double> uniforms, std::size_t count) const;
-  /// The constant errors of all factors of the model, SI. They are zero for all factors(), even while only one of these
-  /// varies.
+  /// [factors of the model] The constant errors, SI: zero for all factors(), even while only one of these varies.
   std::span<const double> background() const { return background_; }
   const SolverOptions& solver() const { return solver_; }        ///< The options with which each sample is solved.
   NotConverged not_converged() const { return not_converged_; }  ///< How samples without a solution are treated.
-  std::uint64_t solves() const;                                  ///< The number of solves in all units together.
+  std::uint64_t solves() const;                                  ///< The number of solves of all units.
 
  private:
-  /// Converts the rows of the slots for which is_chosen(slot) is true. Precondition: it is true for all errors of a
-  /// block or feature, or for none of them.
+  /// Converts the rows for which is_chosen(index of the row) is true. Precondition: for the errors of a block or
+  /// feature, it is true for all or for none.
   template <class Chosen>
   void transform_if(std::span<double> uniforms, std::size_t count, const Chosen& is_chosen) const;
 
@@ -136,8 +136,8 @@ class Plan {
   std::uint64_t seed_;
   Draws draws_;
   std::vector<std::size_t> per_pose_;
-  /// For each varied factor, the uniforms that give the values of given machines; an empty row for an error that is
-  /// drawn.
+  /// [factors()] For an error that given machines state: the uniforms that transform() converts to the machines'
+  /// values. Empty for an error that is drawn.
   std::vector<std::vector<double>> given_;
   SolverOptions solver_;
   NotConverged not_converged_;

@@ -27,7 +27,7 @@ void read_version(const StudyValue& value, Study&, const Reading&) {
   value.fail("is " + std::to_string(number) + ", but this poesy knows version 1 only", "use a newer poesy");
 }
 
-/// Points as a TOML list of lists.
+/// Points of the platform as a TOML list of lists [x, y, z].
 std::string points_text(std::span<const PlatformPoint> points, ValueText value) {
   std::vector<std::string> list;
   for (const PlatformPoint& point : points) {
@@ -37,8 +37,8 @@ std::string points_text(std::span<const PlatformPoint> points, ValueText value) 
   return list_text(list);
 }
 
-/// Throws InputError if the model has no metric, because the responses of such a model do not combine angles with
-/// lengths.
+/// Throws InputError if the study has this key, but the model has no metric. The responses of a model without metric do
+/// not combine angles with lengths.
 void require_metric(std::string_view key, const Study& study, const Reading& reading) {
   if (!study.model().metric.empty()) return;
   reading.root.section("solver").refuse(
@@ -60,7 +60,7 @@ void read_metric(const StudyValue& value, Study& study, const Reading& reading) 
   study.mechanism.entry = &entry;
 }
 
-/// Reads a point of the platform: three lengths.
+/// Reads a point of the platform: three lengths, in the platform's frame.
 PlatformPoint read_point(const StudyValue& value) {
   const std::vector<StudyValue> coordinates = value.list(3, "a point has three, [\"60 mm\", 0, 0]");
   PlatformPoint point{};
@@ -117,14 +117,15 @@ std::string shown_tolerance(const TemplateLines& lines, const Study& study) {
   return lines.explained("solver", "tolerance", "tolerance = " + shortest(study.model().tolerance));
 }
 
-/// The key `series` in the resolved text; empty for the default value, so that studies with this value keep their text.
+/// The key `series` in the resolved text. It is empty for the default, so that the resolved texts of studies without
+/// this key did not change when the key was added.
 std::string series_line(const Study& study) { return study.solver.series ? "" : "series = false\n"; }
 
 std::string shown_series(const TemplateLines& lines, const Study& study) {
   return lines.explained("solver", "series", study.solver.series ? "series = true" : "series = false");
 }
 
-/// Reads the key `not_converged`. "fail" means "exclude" with a limit of 0 on the share of failed samples.
+/// Reads the key `not_converged`. "fail" means "exclude" with max_not_converged = 0.
 void read_not_converged(const StudyValue& value, Study& study, const Reading& reading) {
   const std::vector<std::string_view> known = names(row_of(solver_keys(), "not_converged").value.words);
   const std::string_view word = known[value.word(known)];
@@ -199,7 +200,7 @@ std::vector<StudyRow> solver_rows() {
                .meaning = "Share of all samples; if more fail, the run ends with exit code 5, its result kept."}};
 }
 
-/// The description of a key that is a table with a reader of its own.
+/// The description of a section such as [poses], which another function reads.
 StudyRow table_row(std::string_view name, std::string missing, std::string usual, std::string_view meaning) {
   return {.name = name,
           .value = {.type = "table"},

@@ -16,7 +16,7 @@ namespace poesy {
 
 namespace {
 
-/// The words of a study file, in the order of the enumerations.
+/// The words for values of enumerations in a study file, in the order of the enumerations.
 /// @{
 constexpr std::array<std::string_view, 5> kSelectNames{"interior", "file", "boundary", "grid", "trajectory"};
 constexpr std::array<std::string_view, 2> kDrawsNames{"per pose", "per machine"};
@@ -30,7 +30,8 @@ std::string_view name_among(const std::array<std::string_view, kCount>& names, E
   return names.at(static_cast<std::size_t>(value));
 }
 
-/// The background's errors that are neither varied nor zero.
+/// The errors of the background that the study does not vary and that are not zero. Precondition: the study has a
+/// background.
 std::vector<FactorIndex> held_errors(const Study& study) {
   const std::vector<double> errors = background_errors(study.analysis.background, study.model());
   std::vector<FactorIndex> held;
@@ -41,8 +42,8 @@ std::vector<FactorIndex> held_errors(const Study& study) {
   return held;
 }
 
-/// Says in words which errors are constant: "30 errors of set 'benign'", "2 of the 30 errors of set 'benign'", "delta_1
-/// and delta_2", "12 errors".
+/// The constant errors `held` in words: "30 errors of set 'benign'", "2 of the 30 errors of set 'benign'", "delta_1 and
+/// delta_2", "12 errors".
 std::string owners_text(const std::vector<FactorIndex>& held, const Study& study) {
   const std::vector<FactorIndex>& named = study.analysis.background->factors;
   const std::string all = held.size() == named.size() ? "" : fmt::format("{} of the ", held.size());
@@ -118,7 +119,7 @@ MechanismChoice at_compared_fidelity(MechanismChoice mechanism) {
 
 namespace {
 
-/// Builds the mechanism without the correction by the actuators that MechanismChoice::calibrated asks for.
+/// Builds the mechanism like build_model(), but ignores MechanismChoice::calibrated.
 std::unique_ptr<Model> build_uncorrected(const MechanismChoice& mechanism) {
   const CatalogEntry& entry = *mechanism.entry;
   if (mechanism.points.empty()) {
@@ -134,8 +135,8 @@ std::unique_ptr<Model> build_uncorrected(const MechanismChoice& mechanism) {
   } catch (const std::invalid_argument& reason) {
     MechanismChoice without_points = mechanism;
     without_points.points.clear();
-    // Throws if the geometry is impossible with the model's own points, too; otherwise the study's points are the
-    // problem.
+    // This call throws if the geometry is impossible even without the study's points. If it does not, the points are
+    // the problem.
     static_cast<void>(build_uncorrected(without_points));
     throw InputError(
         mechanism.points_place, reason.what(),

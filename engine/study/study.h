@@ -27,8 +27,8 @@ namespace poesy {
 
 /// A mechanism file and its content.
 struct MechanismText {
-  std::string name;                           ///< name in the study, relative to the study's folder
-  std::string text;                           ///< content of the file
+  std::string name;  ///< path of the file as the study states it, relative to the study's folder
+  std::string text;  ///< content of the file
   std::shared_ptr<const CatalogEntry> entry;  ///< the catalog entry that was read from the text
 };
 
@@ -39,17 +39,17 @@ struct MechanismChoice {
   std::vector<double> geometry;  ///< values of the geometry parameters, SI, in the order of the model's description
   std::size_t fidelity = 0;      ///< index in the model's list of fidelities; 0 if it offers no choice
   Place place;                   ///< place of the section [mechanism], for messages about the whole geometry
-  /// A second fidelity, which is solved with the same draws and compared with the first one; none: only one is solved.
+  /// Index of a second fidelity, at which the same draws are solved for comparison; none: draws are solved only once.
   std::optional<std::size_t> compared = std::nullopt;
-  /// The points of the platform that define the metric; empty: the model's own points.
+  /// Points of the platform that define the metric "platform"; empty: the points that the model chooses.
   std::vector<PlatformPoint> points = {};
   Place points_place = {};  ///< place of the key `points`, for messages
   /// The file that describes the mechanism; none for a mechanism of the catalog.
   std::optional<MechanismText> file = std::nullopt;
   std::vector<OwnResponse> responses = {};  ///< responses that the study defines; they follow those of the mechanism
-  /// The catalog entry with the study's own responses, to which `entry` points; null if the study defines no responses.
+  /// The catalog entry that also has `responses`. `entry` then points to it. Null if the study defines no responses.
   std::shared_ptr<const CatalogEntry> with_responses = nullptr;
-  /// True if the study reports the responses that remain after the best correction by the actuators
+  /// True if the responses are those that remain after the best correction by the actuators at each pose
   /// (Model::calibrated_evaluator).
   bool calibrated = false;
   Place calibrated_place = {};  ///< place of the key `calibrated`, for messages
@@ -65,7 +65,7 @@ struct CorrelatedErrors {
 /// The distributions of the errors.
 struct ErrorModel {
   std::vector<Distribution> by_factor;  ///< distribution of each factor of the model
-  /// How the errors of features scatter in their tolerance zones; none: they have the distribution of other length
+  /// How features scatter in their tolerance zones; none: the errors of features have the distribution of other length
   /// errors.
   std::optional<drawing::ZoneScatter> zones = {};
   std::vector<CorrelatedErrors> correlated = {};  ///< blocks of correlated errors; each factor is in at most one block
@@ -73,7 +73,7 @@ struct ErrorModel {
   /// other errors once.
   std::vector<FactorIndex> per_pose = {};
   /// The errors of given machines, which are not drawn: row s of the table is machine s. Errors without a column in the
-  /// table are drawn. For errors with a column, `by_factor` has the values of the column as a distribution.
+  /// table are drawn. The column of an error is also its distribution in `by_factor` (Distribution::given).
   std::optional<ErrorTable> machines = {};
 
   bool is_per_pose(FactorIndex factor) const;  ///< Returns true if a machine draws this error anew at each pose.
@@ -84,7 +84,7 @@ inline constexpr std::array kErrorDimensions{Dimension::length, Dimension::angle
 
 /// Errors that are constant while others vary.
 struct Background {
-  std::vector<FactorIndex> factors;  ///< errors to hold constant, except those among them that the study varies
+  std::vector<FactorIndex> factors;  ///< errors to hold constant; those that the study varies are ignored
   double linear = 0.0;               ///< constant value of errors that are lengths, m
   double angular = 0.0;              ///< constant value of errors that are angles, rad
   double relative = 0.0;             ///< constant value of errors that are numbers, without unit
@@ -99,9 +99,8 @@ struct Background {
 /// The rule of adaptive samples: a study adds samples until intervals are narrow enough. Each cell (one error at one
 /// pose) gets from `min` to Analysis::samples samples; see engine/run/rounds.h.
 struct AdaptiveSamples {
-  std::size_t min = 1000;  ///< samples before the first decision; rounded up (milestones())
-  /// Wanted half-width of an interval with confidence level conf_level, relative to the magnitude of the estimated
-  /// quantity.
+  std::size_t min = 1000;  ///< samples before the first decision, rounded up by milestones()
+  /// Wanted half-width of a confidence interval (level Analysis::conf_level), divided by the magnitude of the estimate.
   double relative_error = 0.0;
 };
 
@@ -111,11 +110,10 @@ struct ResponseLimit {
   ValueLimit allowed;    ///< range of allowed values, SI
 };
 
-/// The limit of each response, SI; a limit without bounds for responses for which the study states none. responses: the
-/// number of responses.
+/// [responses] The limit of each response, SI. A response for which the study states no limit gets one without bounds.
 std::vector<ValueLimit> limits_by_response(std::span<const ResponseLimit> limits, std::size_t responses);
 
-/// Returns true if any of the limits is a limit on the values at several poses of a machine together, such as a spread
+/// Returns true if one of the limits is on the values of a machine at several poses together, such as their spread
 /// (ValueLimit::is_over_poses).
 bool any_over_poses(std::span<const ResponseLimit> limits);
 
@@ -125,10 +123,10 @@ enum class Draws {
   per_machine  ///< once for all poses: sample s is machine s, which has the same errors at every pose
 };
 
-/// The statistic that is compared with limits; see LimitVerdict.
+/// The statistic that decides whether a response keeps its limit (LimitVerdict in engine/run/result.h).
 enum class Judge {
-  rms,    ///< root mean square of the response over the draws of all poses
-  share,  ///< magnitude of a response that the stated share of the draws does not exceed, at the worst pose
+  rms,    ///< root mean square of the response over all draws at all poses
+  share,  ///< magnitude that the stated share of the draws does not exceed at the worst pose
   yield   ///< share of machines within all limits at all poses; needs Draws::per_machine
 };
 
@@ -138,7 +136,7 @@ struct CalibrationTable;
 /// The analysis of a study: what is computed, and from which errors.
 struct Analysis {
   const StudyKind* kind = nullptr;  ///< kind of the study; not null in a study that was read
-  /// Errors that the study varies or tries; empty if another key of the kind names them.
+  /// Errors that the study varies, or tries one after the other; empty if another key of its kind names them.
   std::vector<FactorIndex> factors;
   std::size_t samples = 1000;  ///< number of samples at each pose, if errors vary
   /// Rule of adaptive samples, with `samples` as the largest number; none: the number of samples is fixed.
@@ -149,18 +147,19 @@ struct Analysis {
   std::vector<ResponseLimit> limits;     ///< limits on responses, in the order of the model's responses
   /// How a machine is calibrated (engine/study/calibration.h); null: it is not calibrated.
   std::shared_ptr<const CalibrationTable> calibration = nullptr;
-  std::any asked;  ///< options that only the study's kind has (asked_of()); empty: their defaults
+  std::any asked;  ///< options that only this kind of study has, read by asked_of(); empty: their defaults
 };
 
-/// The options that only the study's kind has. Precondition: the kind has options of this type.
+/// The options that only the kind of this study has, or their defaults. Precondition: `Options` is the type of these
+/// options.
 template <class Options>
 const Options& asked_of(const Analysis& analysis) {
   static const Options usual{};
   return analysis.asked.has_value() ? std::any_cast<const Options&>(analysis.asked) : usual;
 }
 
-/// The options that only the study's kind has, to be changed. If the analysis has options of another kind, defaults
-/// replace them.
+/// The options that only the kind of this study has, for changing them. If the analysis has options of another type, or
+/// none, they are first set to their defaults.
 template <class Options>
 Options& asked_of(Analysis& analysis) {
   if (std::any_cast<Options>(&analysis.asked) == nullptr) analysis.asked = Options{};

@@ -26,8 +26,8 @@ bool begins_like_hdf5(const std::string& path) {
   return file.is_open() && file.read(0, std::as_writable_bytes(std::span(begin))) && begin == kSignature;
 }
 
-/// Throws InputError if the study asks for more numbers in the result, or more solves, than memory and 64-bit counts
-/// allow.
+/// Throws InputError if the study asks for more numbers in the result than kMostCells, or for more solves than
+/// kMostSolves.
 void check_size(const StudySection& root, const Study& study) {
   const bool from_file = study.poses.select == PoseSelection::Select::file;
   const double poses = static_cast<double>(from_file ? study.poses.from_file.points.size() : study.poses.count);
@@ -66,7 +66,8 @@ void check_fidelities(const Study& study, const Reading& reading) {
   }
 }
 
-/// Throws InputError if the background has no effect, because it names errors that vary.
+/// Throws InputError if the background names a factor set in which all errors vary, or a list with an error that
+/// varies.
 void check_background(const Study& study, const Reading& reading) {
   if (!study.analysis.background || study.analysis.kind->varies == Varies::none) return;
   const auto varies = [&](FactorIndex factor) {

@@ -24,36 +24,36 @@ using Names = std::vector<std::string_view>;
 
 bool contains(const Names& list, std::string_view name) { return std::ranges::find(list, name) != list.end(); }
 
-/// A column of numbers that a table may have.
+/// A column of numbers that the header of a table may name.
 struct KnownColumn {
-  std::string_view name;  ///< name in the header
+  std::string_view name;  ///< title in the header, without the unit
   Dimension dimension;    ///< dimension of the column's numbers
-  /// Name of the coordinate or factor to which the numbers belong: `name`, or another name if `name` is a synonym of
-  /// it.
+  /// Name of the coordinate or factor to which the numbers belong. It differs from `name` only if `name` is a synonym,
+  /// as "time" is for "t".
   std::string_view meant;
 };
 
 /// The columns that the header of a table may name.
 struct KnownColumns {
-  std::vector<KnownColumn> numbers;  ///< columns that are read
-  Names facts = {};                  ///< columns that `poesy export` writes and reading ignores
-  Names labels = {};                 ///< titles of a column of labels; a table may have one such column
-  bool has_texts = false;            ///< true if columns of text are allowed; one of them may name the rows
-  std::string_view what;             ///< what a column of numbers is, for messages: "pose coordinate"
+  std::vector<KnownColumn> numbers;  ///< columns of numbers, which are read
+  Names facts = {};                  ///< titles of columns that `poesy export` writes; they are ignored
+  Names labels = {};                 ///< titles of columns of labels; a table may have one column of labels
+  bool has_texts = false;  ///< true if the table may have other columns, of text; one of them may label the rows
+  std::string_view what;   ///< noun for a column of numbers in messages: "pose coordinate"
 };
 
-/// A column of a table, while it is read.
+/// A column of the table that is being read.
 struct TableColumn {
-  /// What the cells of a column contain. A `fact` is a column that `poesy export` writes and reading ignores.
+  /// What the cells of a column contain. A `fact` is a column that `poesy export` writes and that is ignored.
   enum class Role { number, fact, label, text };
   Role role;               ///< what the cells contain
   std::string_view name;   ///< for a column of numbers, the name of the coordinate or factor (KnownColumn::meant);
                            ///< otherwise the title without the unit
-  std::string_view title;  ///< title in the header, with the unit; a view of the lines
+  std::string_view title;  ///< title in the header, with the unit; a view of the text in CsvLines
   Dimension dimension = Dimension::number;  ///< dimension of the column's numbers
   double si = 1.0;                          ///< factor that converts the column's numbers to SI
   Place place = {};                         ///< place of the title, for a column of text
-  bool may_name_rows = false;               ///< true if people use such a title for names of rows: "Part No."
+  bool may_name_rows = false;               ///< true if people give this title to columns of labels: "Part No."
   bool bare = false;                        ///< true if the title states no unit
 
   /// The title with the unit in which results show this dimension: "z [mm]".
@@ -76,7 +76,7 @@ struct TableColumn {
   throw InputError(place, fmt::format("column '{}' is not a {} of the model", printable(name), known.what), advice);
 }
 
-/// Returns true for titles that people give to names of rows, such as "Part No.", "part_no" and "Teil".
+/// Returns true for titles that people give to columns of labels, such as "Part No.", "part_no" and "Teil".
 bool is_title_of_names(std::string_view title) {
   constexpr std::array<std::string_view, 20> kTitles{
       "part no",    "part nr",        "part number", "part id",      "partno",
@@ -138,8 +138,8 @@ std::vector<TableColumn> read_header(CsvLines& lines, const KnownColumns& known)
   return columns;
 }
 
-/// Takes a column of text with a title that people give labels as the column "part", unless another one names the rows.
-/// From then on its cells must be labels: each valid, and different from the others.
+/// If no column is a column of labels, makes the first column of text with a title such as "serial" one, and renames it
+/// "part". Its cells must then be valid labels and differ.
 void take_likely_labels(std::vector<TableColumn>& columns) {
   constexpr std::array<std::string_view, 5> kTitles{"serial", "serial_number", "sn", "id", "number"};
   if (std::ranges::find(columns, TableColumn::Role::label, &TableColumn::role) != columns.end()) return;
@@ -161,14 +161,14 @@ Names names_of_numbers(std::span<const TableColumn> columns) {
   return list;
 }
 
-/// Whether a table of poses must have a column of times.
+/// Whether a table of poses must have a column of times: `no` for read_poses(), `yes` for read_trajectory().
 enum class Timed { no, yes };
 
 constexpr std::string_view kTime = "t";
 constexpr std::string_view kExportedTime = "time";
 
-/// The sets of columns that a table of poses may have: first the pose's own coordinates, followed by those of each
-/// chart.
+/// The sets of columns that a table of poses may have: first the model's pose coordinates, then the coordinates of each
+/// chart (PoseChart).
 std::vector<Names> possible_headers(const ModelDescription& model, Timed timed) {
   const auto header = [&](const std::vector<PoseCoordinate>& coordinates) {
     Names columns;
@@ -187,7 +187,7 @@ std::string one_of(const std::vector<Names>& headers) {
   return fmt::format("{}", fmt::join(list, " | "));
 }
 
-/// The index in `headers` of the set that has exactly these columns, in any order. Throws InputError if there is none.
+/// The index in `headers` of the set that has exactly these columns, in any order. Throws InputError if no set has.
 std::size_t header_of(const Names& columns, const std::vector<Names>& headers, const std::string& path) {
   const Names* unfinished = nullptr;
   for (std::size_t k = 0; k < headers.size(); ++k) {
@@ -205,18 +205,18 @@ std::size_t header_of(const Names& columns, const std::vector<Names>& headers, c
                    "name every pose coordinate of the model in the first line" + possible);
 }
 
-/// The cells of all lines below the first.
+/// The cells of all lines below the header.
 struct Rows {
-  std::vector<double> values;       ///< row-major, SI, in the order of the columns of numbers
+  std::vector<double> values;       ///< [rows x columns of numbers] numbers, row-major, SI
   std::vector<std::string> labels;  ///< labels of the rows; empty if the table has no column of labels
-  /// Line of each label; the labels are views of the lines.
+  /// Line number of each label. The labels are views of the text in CsvLines.
   std::map<std::string_view, std::size_t, std::less<>> line_of;
   std::set<std::string_view> texts;  ///< names of the columns of text in which a cell has a letter
   /// The cells of each column of text, by the column's name.
   std::map<std::string_view, std::vector<std::string_view>> cells_of_text;
 };
 
-/// Throws InputError if a cell of numbers in the first line below the header has a unit.
+/// Throws InputError if a cell of this line, the first below the header, has a unit where a number is expected.
 void refuse_line_of_units(const std::vector<CsvCell>& cells, std::span<const TableColumn> columns) {
   for (std::size_t k = 0; k < cells.size(); ++k) {
     if (columns[k].role != TableColumn::Role::number || find_unit(cells[k].text) == nullptr) continue;
@@ -234,7 +234,7 @@ double number(const CsvCell& cell, const TableColumn& column) {
       fmt::format("write a plain number, in SI units unless the first line names another: '{}'", column.with_unit()));
 }
 
-/// Returns true if a cell begins like a number, or is a word for infinity or not a number.
+/// Returns true if a cell begins like a number, or is "nan", "inf" or "infinity".
 bool is_like_a_number(std::string_view cell) {
   const std::string_view body = cell.substr(std::min(cell.find_first_not_of("+-."), cell.size()));
   if (!body.empty() && body.front() >= '0' && body.front() <= '9') return true;
@@ -249,8 +249,8 @@ bool has_letter(std::string_view cell) {
   });
 }
 
-/// Reads the label of a row of the table from this cell, and adds it to `rows`. Throws InputError if the label breaks a
-/// rule or is taken.
+/// Adds the label in this cell to `rows`. Throws InputError if the label is not valid (label_problem()), or if an
+/// earlier row has it.
 void read_label(const CsvCell& cell, const TableColumn& column, Rows& rows) {
   const std::string what = std::string(column.name) + " '" + printable(cell.text) + "'";
   if (const auto problem = label_problem(cell.text)) {
@@ -264,8 +264,8 @@ void read_label(const CsvCell& cell, const TableColumn& column, Rows& rows) {
   rows.labels.emplace_back(cell.text);
 }
 
-/// Checks a number (SI) in a row. n: index of the number in the row. Throws InputError if the number is not allowed
-/// there.
+/// A check of a number (SI) of a row. n: index of the number among the numbers of the row. Throws InputError if the
+/// number is not allowed.
 using CheckCell = std::function<void(const Place& place, std::size_t n, const TableColumn& column, double value)>;
 
 /// Reads one line and adds its cells to `rows`.
@@ -291,16 +291,17 @@ void read_row(CsvLines& lines, std::span<const TableColumn> columns, const Known
   }
 }
 
-/// Returns true if these cells may name rows: each one follows label_problem(), and no two are equal.
+/// Returns true if these cells may be labels of rows: each is valid (label_problem()), and no two are equal.
 bool are_labels(const std::vector<std::string_view>& cells) {
   const std::set<std::string_view> different(cells.begin(), cells.end());
   return different.size() == cells.size() &&
          std::ranges::none_of(cells, [](std::string_view cell) { return label_problem(cell).has_value(); });
 }
 
-/// The labels of the rows of a table. If no column is a column of labels, the first column of text that may name the
-/// rows does so; columns with titles that people use for such names come first. With another title it takes two rows,
-/// because the text of one row differs from no other. Empty if there is no such column.
+/// The labels of the rows of a table: the column of labels, if there is one. Otherwise the first column with
+/// `may_name_rows` whose cells may be labels (are_labels()), otherwise the first other column of text whose cells may
+/// be. The latter needs two rows, because a single text always differs from all others. Empty if there is no such
+/// column.
 RowLabels labels_of(std::span<const TableColumn> columns, Rows rows) {
   using Role = TableColumn::Role;
   const auto label = std::ranges::find(columns, Role::label, &TableColumn::role);
@@ -359,7 +360,7 @@ KnownColumns pose_columns(const ModelDescription& model, Timed timed) {
   return known;
 }
 
-/// Throws InputError unless the last time is at most 1e9 s from 0 and larger than the time before it.
+/// Throws InputError if the last time is more than 1e9 s from 0, or not larger than the time before it.
 void check_last(const std::vector<double>& time, const std::string& path) {
   if (!time.empty() && std::abs(time.back()) > kLatestTime) {
     throw InputError({path, time.size() + 1, 1}, "t = " + shortest(time.back()) + " s is more than 1e9 s from 0",
@@ -381,7 +382,8 @@ TimedPoints read_points(CsvLines& lines, const std::string& path, const ModelDes
   const Names columns = names_of_numbers(all);
   const std::vector<Names> headers = possible_headers(model, timed);
   const std::size_t kind = header_of(columns, headers, path);
-  std::vector<std::size_t> order;  // index in the file of each coordinate's column
+  // [coordinates of the set] index of each coordinate's column among the columns of numbers
+  std::vector<std::size_t> order;
   for (const std::string_view name : headers[kind]) {
     order.push_back(static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin()));
   }

@@ -12,8 +12,8 @@
 namespace poesy {
 namespace {
 
-/// The units in which a study of this model may state values. Units of lengths, angles and times are always listed,
-/// those of another dimension only if the model has a response of this dimension.
+/// The units in which a study of this model may state values. Units of length, angle and time are always listed, units
+/// of another dimension only if the model has a response of this dimension.
 std::string model_units(const ModelDescription& model) {
   std::string list;
   for (const Dimension dimension : all_dimensions()) {
@@ -78,7 +78,8 @@ std::string response_section(const TemplateLines& lines, const ModelDescription&
          "# [[response]]\n# name = \"own\"\n" + example;
 }
 
-/// Comment lines of a template that list the model's charts; a file may give poses in the coordinates of a chart.
+/// Comment lines of a template that list the model's charts (PoseChart): other coordinates in which a file may state
+/// poses.
 std::string charts_comment(const ModelDescription& model) {
   std::string text;
   for (const PoseChart& chart : model.charts) {

@@ -30,8 +30,8 @@ void refuse_other_formats(const std::string& path, std::string_view text) {
   }
 }
 
-/// The position behind a cell in quotes that begins at `first`. Throws InputError at the place if the quotes are not
-/// closed on this line, or if text follows them.
+/// The position in the line after a cell in quotes and the blanks that follow it. first: position of the opening quote.
+/// Throws InputError at `place` if the quotes are not closed on this line, or if text follows them.
 std::size_t quoted_end(std::string_view line, std::size_t first, const Place& place) {
   for (std::size_t at = line.find('"', first + 1); at != std::string_view::npos; at = line.find('"', at + 2)) {
     if (line.substr(at).starts_with("\"\"")) continue;
@@ -43,7 +43,7 @@ std::size_t quoted_end(std::string_view line, std::size_t first, const Place& pl
                    "close the quotes, or remove them");
 }
 
-/// Throws InputError if there is a semicolon at or behind the position `begin` of the line, which begins at `place`.
+/// Throws InputError if the line has a semicolon at the position `begin` or later. place: the beginning of the line.
 void refuse_semicolon(std::string_view line, std::size_t begin, const Place& place) {
   const std::size_t semicolon = line.find(';', begin);
   if (semicolon == std::string_view::npos) return;
@@ -114,7 +114,7 @@ std::string_view CsvLines::unquoted(std::string_view cell) {
   auto end = begin;
   for (std::size_t n = 0; n < cell.size(); ++n) {
     *end++ = begin[static_cast<std::ptrdiff_t>(n)];
-    if (begin[static_cast<std::ptrdiff_t>(n)] == '"') ++n;  // of two quotes, the second one is left out
+    if (begin[static_cast<std::ptrdiff_t>(n)] == '"') ++n;  // skips the second one of two quotes
   }
   return {cell.data(), static_cast<std::size_t>(end - begin)};
 }

@@ -20,8 +20,9 @@ struct CsvCell {
 };
 
 /// Reads a CSV file line by line. Commas separate the cells. A cell may be in double quotes as in RFC 4180: commas and
-/// semicolons inside are part of its text, and two quotes inside are one; but it ends on its line. Blank lines may only
-/// be at the end. A byte order mark and line ends of Windows are ignored.
+/// semicolons inside belong to its text, and two quotes inside are read as one. Unlike in RFC 4180, a cell cannot
+/// continue on the next line. Blank lines may only be at the end. A byte order mark and line ends of Windows are
+/// ignored.
 class CsvLines {
  public:
   /// what: the kind of file for messages ("table of poses"). Throws InputError if the file is empty, not a plain file,

@@ -34,14 +34,14 @@ void read_shape(const StudyValue& value, WrittenScatter& written) {
   written.shape = static_cast<ScatterShape>(value.word(kShapes));
 }
 
-/// The allowed range of a number of standard deviations. A larger number would make the standard deviation of an error
-/// too small.
+/// The bounds of the keys `sigmas` and `cpk`. With a larger number, the standard deviation of an error would be too
+/// small for doubles.
 NumberBounds above_zero_to_a_million(std::string_view example) {
   return {0.0, 1e6, false, "greater than 0 and less than 1e6",
           fmt::format("it must lie between 0 and 1e6, e.g. {}", example)};
 }
 
-/// Describes an optional key that is a number within bounds.
+/// The KeyValue of an optional number within bounds.
 KeyValue<WrittenScatter> number(std::optional<double> WrittenScatter::*member, const NumberBounds& bounds) {
   return {
       .type = bounds.percent ? "number or percent" : "number",
@@ -111,9 +111,10 @@ ZoneScatter scatter_of(const StudyValue& value) {
   return scatter;
 }
 
-/// Throws InputError if a feature's zone does not allow the shape of the scatter.
+/// Throws InputError if the shape of the scatter is not possible for one of the features and its zones.
 void check_shape(const StudyValue& value, const ZoneScatter& scatter, const std::vector<Feature>& features) {
-  constexpr double kLeastInspected = 1.5;  // with less, inspection would reject too many parts
+  // with fewer standard deviations in half a zone, inspection would reject too many parts
+  constexpr double kLeastInspected = 1.5;
   for (const Feature& feature : features) {
     if (feature.clearance || (!feature.location && !feature.orientation)) continue;
     if (scatter.shape == ScatterShape::boundary && !drawing::can_touch(feature)) {
@@ -158,9 +159,9 @@ std::string shown_zones(const TemplateLines& lines, const Study& study) {
          "zones = { distribution = \"normal\", sigmas = 3 }\n";
 }
 
-/// The distribution of one error of a feature. sigma: standard deviation of the error, m. The distribution has the
-/// shape of the scatter if the error is drawn independently of other errors. It is normal for a clearance, and for
-/// errors that are drawn together with others of the feature.
+/// The distribution of one error of a feature. It has the shape of the scatter if the error is drawn independently of
+/// other errors. It is normal for a clearance, and for errors of the feature that are drawn together. sigma: standard
+/// deviation of the error if it is normal, m.
 Distribution distribution_of(const Feature& feature, const ZoneScatter& scatter, double sigma) {
   const bool has_shape = !feature.clearance && !drawing::are_drawn_together(feature, scatter);
   if (has_shape && scatter.shape == ScatterShape::uniform) {
@@ -173,7 +174,8 @@ Distribution distribution_of(const Feature& feature, const ZoneScatter& scatter,
   return Distribution::normal(sigma);
 }
 
-/// Returns true if the study varies an error with the distribution that follows from the tolerance zone.
+/// Returns true if the study varies this error with the distribution in `by_zones`, which follows from its tolerance
+/// zone.
 bool varies_by_zone(const Study& study, const std::vector<std::optional<Distribution>>& by_zones, FactorIndex error) {
   const std::vector<FactorIndex>& varied = study.analysis.factors;
   return by_zones[error.value] && study.errors.by_factor[error.value] == *by_zones[error.value] &&

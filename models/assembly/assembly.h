@@ -48,10 +48,10 @@ struct LinkEnd {
   /// The body at which the limb begins, a joint of the limb, or the body at which it ends.
   enum class At { from, joint, to };
   At at;                  ///< kind of end
-  std::size_t joint = 0;  ///< index in the limb of the joint (of one freedom), if the end is at one
+  std::size_t joint = 0;  ///< index in the limb of the joint (of one freedom); used only if `at` is `joint`
 };
 
-/// The cross-section of a straight beam along x.
+/// The stiffnesses of the cross-section of a straight beam along x.
 struct BeamSection {
   double EA = 0.0;   ///< tension stiffness, N
   double GJ = 0.0;   ///< torsion stiffness, N m^2
@@ -70,8 +70,8 @@ struct Link {
   /// joint moves. A component along the x axis is removed. Without a value, the solver takes any direction
   /// perpendicular to x.
   std::optional<Vector3> y;
-  /// The stiffness of the link as a beam, or its compliance matrix in a frame at the end `to`. The x axis of this frame
-  /// is along the link, and the member `y` gives its y axis.
+  /// The stiffnesses of the link if it is a beam. Otherwise its compliance matrix (SI) in a frame at the end `to`; the
+  /// x axis of this frame is along the link, and the member `y` gives the y axis.
   std::variant<BeamSection, Matrix6> stiffness;
 };
 
@@ -93,7 +93,7 @@ struct Limb {
 
 /// Loads with constant magnitudes and directions. They act at the nominal positions of their points of application.
 struct Load {
-  Vector3 gravity = Vector3::Zero();  ///< gravity, m/s^2, which acts on every mass
+  Vector3 gravity = Vector3::Zero();  ///< acceleration of gravity along the base's axes, m/s^2; acts on every mass
   std::size_t body = kPlatform;       ///< body on which force and moment act
   Vector3 at = Vector3::Zero();       ///< point of application, in the body's frame (m)
   Vector3 force = Vector3::Zero();    ///< force along the base's axes, N
@@ -105,9 +105,10 @@ struct Load {
 
 /// The source of the limbs' compliance C.
 enum class Metric {
-  platform,  ///< no stiffness is known: the compliance C of each limb is W^-1, with the metric W of the platform's
-             ///< points, and no load acts
-  stiffness  ///< the compliance of a limb follows from the stiffness of bearings, links and limbs
+  /// No stiffness is known and no load acts; the compliances follow from the metric of the platform's points, see
+  /// nominal().
+  platform,
+  stiffness  ///< the compliances follow from the stiffness of bearings, links and limbs
 };
 
 /// A mechanism of limbs that connect bodies.
@@ -130,8 +131,8 @@ struct Assembly {
 };
 
 /// The indices of limbs by which bodies can be placed one after the other: for each body except the base, a limb that
-/// ends there and begins at a body placed before. The list is shorter if no limbs lead from the base to some bodies.
-/// AnyLimb is a type with the members `from` and `to`.
+/// ends there and begins at the base or at a body placed before. The list is shorter if no limbs lead from the base to
+/// some bodies. AnyLimb is a type with the members `from` and `to`.
 template <class AnyLimb>
 std::vector<std::size_t> placing_limbs(std::size_t bodies, const std::vector<AnyLimb>& limbs) {
   std::vector<bool> is_placed(bodies, false);

@@ -27,7 +27,8 @@ double chebyshev(std::size_t n, std::size_t node) {
 }
 
 /// The coefficients of the Chebyshev series through the states at the nodes; empty if the states do not vary smoothly.
-/// Coefficients and states have a row of kTerms numbers for each number of a state.
+/// states: for each number of a state (KernelStart), a row with its values at the kTerms nodes. The result has a row of
+/// kTerms coefficients for each number of a state.
 std::vector<double> series_of(std::span<const double> states) {
   std::array<double, kTerms * kTerms> weights;
   for (std::size_t n = 0; n < kTerms; ++n) {
@@ -83,7 +84,8 @@ void BlockSolver::run(KernelWork work, PoseProblem& problem, const SampleBlock& 
   }
 }
 
-/// Solves samples at the Chebyshev nodes of the varied error's range. Other samples then start near their solutions.
+/// Solves samples at the Chebyshev nodes of the varied error's range, and computes the series of starting points from
+/// them. All other samples then start near their solutions.
 void BlockSolver::predict_starts(PoseProblem& problem, const SampleBlock& samples) {
   if (problem.has_starts(samples)) return;
   std::array<double, kTerms> nodes;

@@ -13,12 +13,12 @@
 
 namespace poesy::assembly {
 
-/// Solves blocks of samples with the fastest kernel that this machine supports. Other solvers follow for samples that
-/// the kernel does not solve, or whose solution may be a wrong one. If limbs do not deform each other, Continuation
-/// solves such a sample or finds that it is not_assembled. If limbs deform each other, Closure first decides which
-/// samples are not_assembled among those with errors that may open a loop. Solver then solves the other samples that
-/// the kernel left: the same equations, with a new matrix in each step. Closure also judges the samples that Solver
-/// does not solve. Owns the scratch memory of one thread.
+/// Solves blocks of samples with the fastest kernel that this machine supports. Other solvers treat the samples that
+/// the kernel does not solve, or for which it may have found a wrong solution. If limbs do not deform each other,
+/// Continuation solves such a sample or finds that it is not_assembled. If limbs deform each other, Closure first
+/// decides which samples are not_assembled among those with errors that may open a loop. Solver then solves the
+/// remaining samples that the kernel left; it uses the same equations, but a new matrix in each step. Closure also
+/// judges the samples that Solver does not solve. An object has scratch memory, so each thread needs its own object.
 class BlockSolver {
  public:
   BlockSolver(const AssemblyModel& model, const SolverOptions& options);  ///< The model must outlive this object.
@@ -46,7 +46,7 @@ class BlockSolver {
   Solver solver_;
   Continuation continuation_;
   ErrorFrames frames_;
-  std::vector<double> values_;     ///< scratch: values of varied components, see PoseProblem::with()
+  std::vector<double> values_;     ///< scratch of PoseProblem::with()
   std::vector<double> responses_;  ///< [responses x stride] responses of each sample
   std::vector<KernelEnd> ends_;    ///< [stride] how the kernel ended each sample
   /// [count] First-order change of ln det N of each sample, from Closure::find_nearing(). A value far below zero means

@@ -12,7 +12,8 @@ namespace {
 using Eigen::Index;
 using Matrix = Eigen::MatrixXd;
 
-/// A drive corrects nothing if it moves the platform by less than this share of the largest motion that a drive causes.
+/// A drive counts as unable to correct anything if it moves the platform by at most this share of the largest motion
+/// that any drive causes.
 constexpr double kNothing = 1e-9;
 
 Index index(std::size_t value) { return static_cast<Index>(value); }
@@ -40,8 +41,8 @@ Matrix driven_twists(const AssemblyModel& model, const Nominal& at) {
   return twists;
 }
 
-/// [6 bodies x 6] The matrix from the uncorrected twist of the platform to the twists of all bodies that the best
-/// correction takes away.
+/// [6 bodies x 6] The matrix from the uncorrected twist of the platform to a twist of each body. The best correction
+/// subtracts this twist from the uncorrected one of the same body.
 Matrix taken_by_drives(const AssemblyModel& model, const Nominal& at) {
   const FirstOrder first_order(model.assembly, at, model.ranks);
   Matrix moved = first_order.effect(driven_twists(model, at)).twists;
@@ -62,7 +63,7 @@ struct Correction {
   Matrix taken;  ///< matrix of taken_by_drives()
 };
 
-/// Access to those responses of one sample that state the displacement of one body.
+/// Access to the responses of one sample that describe the displacement of one body.
 class Rows {
  public:
   /// first: row of the displacement of the body's origin along x.
@@ -102,7 +103,8 @@ class CalibratedEvaluator final : public Evaluator {
   }
 
  private:
-  static constexpr std::size_t kMostPoses = 256;  ///< largest number of poses whose correction is kept
+  /// All corrections are discarded when more poses than this are stored.
+  static constexpr std::size_t kMostPoses = 256;
 
   const Correction& correction_at(std::span<const double> pose) {
     if (corrections_.size() > kMostPoses) corrections_.clear();

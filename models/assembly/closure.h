@@ -16,7 +16,7 @@ bool is_open(const AssemblyModel& model, const Nominal& pose, std::span<const Sc
 /// not, Continuation decides. Bodies and passive joints descend from the nominal pose to the configuration at which the
 /// sum of |xi|_W^2 over the limbs is least; xi is the mismatch of a limb, and W the metric of the platform's points.
 /// Let r be the part of the remaining mismatch that bodies and joints of the perfect assembly could take away. N = B^T
-/// W B is the matrix of Loops in this configuration, and C(r) is the matrix of bend() (loops.h). The machine cannot be
+/// W B, with B as in Loops but in this configuration, and C(r) is the matrix of bend() (loops.h). The machine cannot be
 /// assembled if N - 2 C(r) is not positive definite. This is the rule of chain::Assembly; stiffness has no influence on
 /// it.
 ///

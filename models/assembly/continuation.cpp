@@ -9,15 +9,16 @@
 namespace poesy::assembly {
 namespace {
 
-/// Tolerance of solves on the way; the error after Newton's last step is about the square of the tolerance.
+/// Tolerance of the solves of strides; the error after Newton's last step is about the square of the tolerance.
 constexpr double kTolerance = 1e-9;
-constexpr int kMostIterations = 12;  ///< largest number of iterations of a solve on the way
-/// Shortest stride, as a share of the errors. If a stride had to be shorter, the path ends.
+constexpr int kMostIterations = 12;  ///< largest number of iterations in a stride
+/// Shortest stride, as a share of the errors. If a shorter stride is needed, the path ends there.
 constexpr double kShortest = 1e-8;
 
 constexpr std::uint32_t kMostOnTheWay = 1000;  ///< largest number of iterations of all strides together
 
-/// Puts the iterations and steps of a solution before those of the next one.
+/// Adds the iterations of a solution to those of the next solution, and puts the steps of the first before those of the
+/// next.
 void add_iterations(const Solution& before, Solution& next) {
   next.iterations += before.iterations;
   next.steps.insert(next.steps.begin(), before.steps.begin(), before.steps.end());

@@ -7,8 +7,8 @@
 namespace poesy::assembly {
 namespace {
 
-/// The contribution of a pair of limbs to a response is the norm of M x (mismatch of the pair). Returns the matrix M,
-/// which has six columns.
+/// The matrix M [rows x 6] of a response: to first order, the response is the root mean square over the pairs of limbs
+/// of |M delta_mu|, where delta_mu is the mismatch of a pair.
 Eigen::MatrixXd judged_of_pair(const Nominal& pose, std::size_t response) {
   if (response == 0) return linalg::cholesky_root(pose.W);  // response `gap`
   if (response == 1) return Eigen::MatrixXd::Identity(3, 6);

@@ -62,8 +62,8 @@ class AssemblyKernel {
   }
 
   /// The lanes that need no further round. In such a lane this round moved bodies and joints by at most the tolerance,
-  /// and changed wrenches by no more than rounding; or the changes are small and shrink so fast that the next round
-  /// would do so.
+  /// and changed wrenches by no more than rounding; or the changes are small, and shrink so fast that the changes of
+  /// the next round would be within these limits.
   Mask has_settled(const LaneChange<T>& change) const {
     const T tolerance(problem_.tolerance * problem_.tolerance);
     const auto rests = [](T now, T before, T limit, T small) {

@@ -9,7 +9,7 @@
 
 namespace poesy::assembly {
 
-/// Calls work(number of passive joints), with the number as a compile-time constant.
+/// Calls work() with the number of passive joints as a compile-time constant. Precondition: passive <= kMostOwnJoints.
 template <class Work>
 void with_passive(std::size_t passive, Work work) {
   switch (passive) {
@@ -30,9 +30,9 @@ void with_passive(std::size_t passive, Work work) {
   }
 }
 
-/// The matrix of the bodies' equations. It has a block [6 x 6] for each pair of bodies. Blocks that neither limbs nor
-/// the elimination fill stay zero and are skipped. The platform is eliminated last, because most limbs connect other
-/// bodies with it.
+/// The matrix of the bodies' equations. It has a block [6 x 6] for each pair of bodies other than the base. Blocks that
+/// neither limbs nor the elimination fill stay zero and are skipped. The platform is eliminated last, because most
+/// limbs connect other bodies with it.
 template <class T>
 class BodyMatrix {
  public:

@@ -119,7 +119,8 @@ class ConstantStep {
     }
   }
 
-  /// Changes the wrench of limb e in the active lanes. Returns the square of the change.
+  /// Changes the wrench p of limb e in the active lanes. Adds C (p + dp) to the twist `wanted`. Returns the square of
+  /// dp.
   T step_wrench(LaneAssembly<T>& state, std::size_t e, Mask active, T* wanted) {
     const KernelLimb& limb = problem_.limbs[e];
     T* p = &state.wrenches[6 * e];

@@ -16,7 +16,7 @@ class KernelMapper {
   /// Value of `rows` that means that all coordinates are wanted.
   static constexpr std::size_t kAllRows = static_cast<std::size_t>(-1);
 
-  /// Both arguments must outlive this object. rows: number of coordinates that are wanted.
+  /// Both arguments must outlive this object. rows: number of coordinates to compute, beginning with the first.
   KernelMapper(const KernelProblem& problem, const KernelBlock& block, std::size_t rows)
       : problem_(problem),
         map_(problem.map),

@@ -92,7 +92,7 @@ template <class T>
   for (int k = 0; k < 3; ++k) twist[3 + k] = madd(T(joint.advance), axis[k], twist[3 + k]);
 }
 
-/// The product of a twist and a wrench.
+/// The scalar product of two vectors of six numbers, such as a twist and a wrench.
 template <class T>
 [[gnu::always_inline]] inline T dot6(const T* a, const T* b) {
   return simd::dot3(a, b) + simd::dot3(a + 3, b + 3);

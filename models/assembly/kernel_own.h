@@ -14,8 +14,9 @@ inline constexpr double kSafePivot = 1e-5;
 /// the ninth round (iteration) and so on. The compliances C of the limbs must be regular. Consider a limb from body a
 /// to body b. Its wrench is p, and xi = log(g T^-1) is the mismatch between its end, with the pose g, and body b, with
 /// the pose T. The columns of S are the twists of the limb's passive joints. Let ad xi be the bracket with the
-/// mismatch, E(x) = 1 + x/2 + x^2/12 the differential of the logarithm, and D = E(-ad xi) S. V_a and V_b are the twists
-/// of the bodies a and b, and dq are the displacements of the passive joints. The equations of the limb,
+/// mismatch, E(x) = 1 + x/2 + x^2/12 the differential of the logarithm to second order, and D = E(-ad xi) S. V_a and
+/// V_b are the twists of the bodies a and b, and dq are the displacements of the passive joints. The equations of the
+/// limb,
 ///
 ///     p + dp = C^-1 (xi + D dq + E(-ad xi) V_a - E(ad xi) V_b)
 ///     S_j^T (p + dp) + sum over k < j of [S_k, S_j]^T p dq_k + [V_a, S_j]^T p = 0,
@@ -68,7 +69,7 @@ class OwnStep {
   struct Present {
     T columns[6 * kMostOwnJoints];  ///< columns of S: twists of the passive joints
     T open[6];                      ///< mismatch xi
-    T rest[6];                      ///< wrench C^-1 xi that belongs to the mismatch, minus the present wrench p
+    T rest[6];                      ///< C^-1 xi, the wrench that belongs to the mismatch, minus the present wrench p
     T alone[kMostOwnJoints];        ///< dq of the passive joints if no body moves
   };
 
@@ -156,7 +157,7 @@ class OwnStep {
   }
 
   /// Computes the limb's matrix, and adds the limb's contribution to the matrix of the bodies. Returns the lanes in
-  /// which its pivots are safe.
+  /// which all pivots of the limb's matrix are safe.
   template <std::size_t n>
   Mask set_matrix(const KernelLimb& limb, const Present& now, const T* p, Limb& of) {
     for (int k = 0; k < 6; ++k) of.xi[k] = now.open[k];

@@ -18,10 +18,10 @@ struct KernelMotion {
 
 /// A constant factor of a product of motions.
 struct KernelConstant {
-  /// Whether a motion is the identity, only a translation, or any motion.
+  /// The form of a motion: the identity, only a translation, or any motion.
   enum class Shape : std::uint8_t { identity, translation, any };
   KernelMotion motion;  ///< the whole motion
-  Shape shape;          ///< form of the motion, by which a product skips the parts that change nothing
+  Shape shape;          ///< form of the motion; a product skips the parts of the computation that would change nothing
 };
 
 /// The error of a fixed frame, with rotation exp(omega) and translation v, or its inverse.
@@ -40,29 +40,30 @@ struct KernelPiece {
 };
 
 /// The motion between two joints of a limb: the product of all pieces and of `behind`. The constant motions include
-/// frames without errors, and joints that do not move.
+/// frames without errors, and joints that are neither passive nor reported.
 struct KernelSegment {
   std::vector<KernelPiece> pieces;  ///< a piece for each frame with an error
   KernelConstant behind;            ///< motion behind the last error
 };
 
-/// A joint that moves, or a joint whose frame is reported.
+/// A passive joint, or an actuated joint whose frame is reported.
 struct KernelJoint {
   bool slides;          ///< true: it slides along z; false: it rotates about z
-  double advance;       ///< displacement along z per rad of a rotating joint
-  int passive;          ///< index among the limb's passive joints; -1 if it does not move
+  double advance;       ///< displacement along z (in units of the reach) per rad of a rotating joint; else 0
+  int passive;          ///< index among the limb's passive joints; -1 if the joint is not passive
   int mark;             ///< index among the reported joint frames; -1 if this frame is not reported
-  double displacement;  ///< nominal displacement
+  double displacement;  ///< nominal displacement (rad, or units of the reach)
 };
 
-/// The largest number of passive joints of a limb in problems whose samples have matrices of their own.
+/// The largest number of passive joints of a limb in problems whose samples have matrices of their own
+/// (KernelStep::meet and KernelStep::own).
 inline constexpr std::size_t kMostOwnJoints = 6;
 
 /// A limb from one body to another, with the data of its linear equations; see Equilibrium for carry, give and lambda.
 struct KernelLimb {
   std::size_t from;                 ///< index of the body at which the limb begins
   std::size_t to;                   ///< index of the body at which the limb ends
-  std::vector<KernelJoint> joints;  ///< joints that move or are reported
+  std::vector<KernelJoint> joints;  ///< joints that are passive or reported
   /// Motions before, between and behind these joints. If the limb begins at the base, the first motion includes the
   /// pose of the base in the kernel's frame.
   std::vector<KernelSegment> segments;
@@ -74,8 +75,8 @@ struct KernelLimb {
   std::vector<double> carry;
   std::vector<double> give;  ///< [passive x 6] matrix from a twist to the passive joints' displacements of least norm
   double compliance[36];     ///< compliance of the limb, row by row
-  double stiffness[36];      ///< inverse of the compliance, row by row, if samples have matrices of their own
-  bool is_diagonal;          ///< true if the inverse of the compliance is diagonal
+  double stiffness[36];      ///< inverse of the compliance, row by row; set only for KernelStep::own
+  bool is_diagonal;          ///< true if the matrix `stiffness` is diagonal
   /// [passive x passive] Terms that make the limb's matrix regular although some passive joints can move without moving
   /// a body (idle freedoms).
   std::vector<double> idle;
@@ -88,13 +89,13 @@ struct KernelMark {
   KernelJoint joint;  ///< the joint itself
 };
 
-/// The data that a sample's responses need, in the order of response_values().
+/// The data from which the responses of a sample are computed. Their order is that of response_values().
 struct KernelReport {
   bool deforms;      ///< true if mismatch is reported
   bool has_motions;  ///< true if displacements of bodies are reported
   bool has_tool;     ///< true if the displacement of the tool point is reported
   bool has_forces;   ///< true if energy, forces and moments are reported
-  double metric[6];  ///< diagonal of the metric; in its norm, the square of a twist is in m^2
+  double metric[6];  ///< diagonal of the metric W: xi^T W xi is in m^2 for a twist xi in the kernel's units
   double origin[3];  ///< nominal origin of the platform
   double share;  ///< factor by which sums over the limbs of squared mismatches are multiplied before the root is taken:
                  ///< 2 / (number of independent loops)
@@ -105,9 +106,10 @@ struct KernelReport {
   double moment;                            ///< unit of moments (N m) and of energy (J)
   std::size_t marks;                        ///< number of joint frames that are reported
   std::vector<KernelMotion> nominal_marks;  ///< [marks] nominal joint frames
-  std::vector<std::size_t> moments;         ///< [limbs] index of the frame at whose origin a limb's moment is taken
-  std::vector<KernelMark> drives;           ///< driven joints, in the order of the responses
-  std::vector<KernelMark> reactions;        ///< joints whose reactions are reported
+  /// [limbs] Index of the reported frame about whose origin each limb's moment is taken.
+  std::vector<std::size_t> moments;
+  std::vector<KernelMark> drives;     ///< driven joints, in the order of the responses
+  std::vector<KernelMark> reactions;  ///< joints whose reactions are reported
 
   /// The number of responses (rows of KernelBlock::responses) of an assembly with this number of bodies (including the
   /// base) and limbs.
@@ -123,11 +125,12 @@ struct KernelReport {
 /// passive joints.
 struct KernelMap {
   static constexpr std::size_t kRows = 12;  ///< number of coordinates that are computed together
-  std::size_t entries;                      ///< number of varied values
+  std::size_t entries;                      ///< number of varied values of a sample
   std::size_t stresses;        ///< number of stresses: the coordinates of wrenches by which limbs load each other
   std::vector<double> units;   ///< [entries] factor of each varied value
-  std::vector<double> offset;  ///< [coordinates, padded] coordinates without the varied errors
-  /// [coordinates / kRows, padded][entries][kRows] coordinates per unit of each varied value.
+  std::vector<double> offset;  ///< [coordinates, padded to whole kRows] coordinates if the varied errors are 0
+  /// [blocks of kRows coordinates][entries][kRows] Change of each coordinate per unit of each varied value; the last
+  /// block is padded.
   std::vector<double> matrix;
   std::vector<double> wrenches;  ///< [6 limbs x stresses] wrenches per unit of each stress, row by row
   std::vector<double> by_load;   ///< [6 limbs] wrenches without errors, by load and rounded numbers
@@ -153,7 +156,7 @@ enum class KernelStep : std::uint8_t {
 
 /// An assembly at a pose, with errors.
 struct KernelProblem {
-  std::vector<KernelMotion> bodies;  ///< nominal places of all bodies, including the base
+  std::vector<KernelMotion> bodies;  ///< nominal poses of all bodies, including the base
   std::vector<KernelLimb> limbs;     ///< limbs, in the order of the file
   std::size_t joints;                ///< number of passive joints of all limbs
   std::size_t size;                  ///< number of equations: one for each lambda, 6 for each body but the base
@@ -176,9 +179,9 @@ struct KernelProblem {
   std::size_t rows_of_state() const { return 6 * (bodies.size() - 1 + limbs.size()) + joints; }
 };
 
-/// How the kernel ended a sample. doubtful: it converged, but may have gone to another solution than the one that grows
-/// from the nominal pose, because it started far from the nominal pose, or its steps once shrank slowly. left: another
-/// solver must solve it.
+/// How the solve of a sample by the kernel ended. doubtful: the solve converged, but perhaps to another solution than
+/// the one that grows from the nominal pose, because it started far from the nominal pose, or its steps once shrank
+/// slowly. left: another solver must solve the sample.
 enum class KernelEnd : std::uint8_t { converged, doubtful, left };
 
 /// A block of samples. The stride is at least count, and a multiple of the number of lanes of every instruction set.
@@ -188,9 +191,9 @@ struct KernelBlock {
   const double* values;  ///< [KernelMap::entries x stride] varied values
   /// [responses x stride] Responses, SI; arbitrary for samples with KernelEnd::left, which another solver must solve.
   double* responses;
-  /// [stride] How each sample ended. To first order, `left` means that the result is not finite.
+  /// [stride] How each sample ended. After a first-order solve, `left` means that the result is not finite.
   KernelEnd* ends;
-  std::uint32_t* iterations;  ///< [stride] iterations of each sample; not written to first order
+  std::uint32_t* iterations;  ///< [stride] iterations of each sample; not written by a first-order solve
   double* states = nullptr;   ///< [rows_of_state() x stride] states after the solves; null if not wanted
   /// [6 limbs x stride] Mismatch xi of each limb, in the kernel's units and axes; null if not wanted.
   double* mismatch = nullptr;

@@ -13,7 +13,7 @@ struct LimbState {
 
   std::vector<Transform> before;  ///< [joints] base_T_joint before the joint moves
   std::vector<Transform> after;   ///< [joints] base_T_joint after the joint has moved
-  Transform end;                  ///< pose of the limb's end; equal to the pose of the body there if no force acts
+  Transform end;                  ///< pose of the limb's end; if the limb exerts no wrench, that of the body there
   Columns passive;                ///< J: twists of the end by the passive joints, one in each column
 
   /// The twist of the limb's end by joint j, passive or driven.
@@ -35,9 +35,9 @@ std::vector<LimbState> limb_states(const Assembly& assembly, std::span<const Tra
 /// Equilibrium). Bodies do not include the base. The six rows of each limb are multiplied by the matrix `root`.
 Eigen::MatrixXd motion_columns(const Assembly& assembly, std::span<const LimbState> limbs, const Matrix6& root);
 
-/// The first-order twist of the limb's end per unit of a component of a frame's error. Let F be the frame before the
-/// error. The twist is a column of Ad(F), or of -Ad(F) in the limb's last frame, to which the inverse of the error is
-/// applied. component: index in [omega; v].
+/// The first-order twist of the limb's end per unit of a component of a frame's error. Let F be the pose, in the base
+/// frame, of the place in the limb where the error acts. The twist is a column of Ad(F), or of -Ad(F) in the limb's
+/// last frame, to which the inverse of the error is applied. component: index in [omega; v].
 Screw error_twist(const Limb& limb, const Transform& from, const LimbState& state, std::size_t frame,
                   std::size_t component);
 

@@ -46,8 +46,9 @@ std::vector<Mover> movers(const Limb& limb, const LimbState& state, Index first_
 }
 
 /// The slopes of ln det N with respect to the errors of one limb's frames, if bodies and joints do not follow the
-/// errors. A motion m in front of a joint changes the joint's column c by [m, c]. pulls: [6 x passive joints]; the
-/// change of ln det N is the sum of the products of `pulls` with the changes of the columns.
+/// errors. A motion m in front of a joint changes the joint's column c by the bracket [m, c]. pulls: [6 x passive
+/// joints], one wrench for each column c; the change of ln det N is the sum of the products of these wrenches with the
+/// changes of their columns.
 std::vector<Screw> slopes_in_front(const Limb& limb, const LimbState& state, const Matrix& pulls) {
   std::vector<Screw> slopes(limb.chain.frames(), Screw::Zero());
   Index k = state.passive.cols();
@@ -78,7 +79,8 @@ Loops::Loops(const Assembly& assembly, const Nominal& pose, std::size_t idle)
 
 Vector Loops::taken_away(const Vector& mismatch) const { return weighed_ * (weighed_.transpose() * mismatch); }
 
-/// Uses d ln det N = trace(N^-1 dN) = 2 trace(N^-1 B^T W dB). The column of each joint contributes one term.
+/// Computes the slopes from d ln det N = trace(N^-1 dN) = 2 trace(N^-1 B^T W dB). The column of each joint contributes
+/// one term.
 std::vector<std::vector<Screw>> Loops::determinant_slopes() const {
   const std::size_t limbs = pose_->limbs.size();
   const std::vector<Index> first = first_passive(pose_->limbs);

@@ -40,8 +40,9 @@ class Loops {
   bool is_regular_;
 };
 
-/// The symmetric part of the matrix C(r) for limbs in these states, with mismatches r [limbs]. N + C(r) is minus the
-/// derivative of B^T W xi, where xi is the mismatch (see Loops for B, W and N).
+/// The symmetric part of the matrix C(r) for limbs in these states, with mismatches r [limbs]. The matrix C(xi) is
+/// defined by the derivative of B^T W xi with respect to x, which is -(N + C(xi)) for a mismatch xi (see Loops for B,
+/// W, N and x).
 Eigen::MatrixXd bend(const Assembly& assembly, std::span<const LimbState> limbs, std::span<const Screw> r,
                      const Matrix6& W);
 

@@ -35,7 +35,7 @@ class AssemblyEvaluator final : public Evaluator {
   }
 
  private:
-  static constexpr std::size_t kMostPoses = 256;  ///< largest number of poses whose problem is kept
+  static constexpr std::size_t kMostPoses = 256;  ///< all problems are discarded when more poses than this are stored
 
   PoseProblem& problem_of(std::span<const double> pose) {
     if (problems_.size() > kMostPoses) problems_.clear();
@@ -52,7 +52,7 @@ class AssemblyEvaluator final : public Evaluator {
   std::map<std::vector<double>, PoseProblem> problems_;
 };
 
-/// The solution of the one machine whose errors are all constant (sample.errors). The solvers are those that
+/// The solution for a single machine, whose errors are sample.errors; no error varies. The solvers are those that
 /// BlockSolver uses if the kernel fails.
 Solution exact_solution(const AssemblyModel& model, const Nominal& at, const SampleBlock& sample,
                         const SolverOptions& options) {

@@ -14,19 +14,19 @@ namespace poesy::assembly {
 /// An assembly as a model. Its responses are displacements, mismatch, energy and forces.
 struct AssemblyModel {
   Assembly assembly;                     ///< perfect limbs that connect bodies
-  Report report;                         ///< responses in addition to those of every assembly
+  Report report;                         ///< choice of responses
   std::vector<chain::ErrorTerms> terms;  ///< [errors] terms of each error
-  std::vector<std::size_t> ranks;        ///< [limbs] rank of the passive joints' columns
+  std::vector<std::size_t> ranks;        ///< [limbs] rank of the columns of each limb's passive joints
   std::size_t idle = 0;                  ///< number of motions of passive joints that move no body
-  bool deforms = true;                   ///< true if errors may cause mismatch between limbs and bodies, or loads act
+  bool deforms = true;                   ///< true if limbs deform each other or have stiffness, so mismatch is reported
   bool over_constrained = true;          ///< true if limbs deform each other
   /// True if the file's numbers are rounded, so that perfect limbs fit their bodies only approximately.
   bool rounded = false;
   /// Pairs of limbs whose mismatch is an additional output (Detail in engine/model/model.h). All these limbs lead from
   /// the base to the platform. Empty if there are no additional outputs.
   std::vector<chain::LimbPair> pairs = {};
-  double stiffness = 0.0;  ///< largest force in a limb per unit motion of a limb's end, at the home pose (N/m)
-  /// Gives the nominal displacements of all joints at a reachable pose, limb by limb (rad, m).
+  double stiffness = 0.0;  ///< largest_stiffness() at the home pose (N/m); 0 if limbs have no stiffness
+  /// Returns the nominal displacements of all joints at a reachable pose, limb by limb (rad, m).
   std::function<std::vector<double>(std::span<const double> pose)> joint_displacements;
 
   /// The perfect assembly at a reachable pose. If the file's numbers are rounded, this is the state in which the
@@ -57,10 +57,10 @@ SolveTrace assembly_trace(const AssemblyModel& model, std::span<const double> po
 /// these columns is rank-deficient to rounding.
 double condition(const AssemblyModel& model, std::span<const double> pose);
 
-/// The largest force in any limb (N/m) per unit motion of a limb's end at this pose.
+/// The largest component of the force in any limb per unit displacement of the end of any limb, at this pose (N/m).
 double largest_stiffness(const AssemblyModel& model, const Nominal& pose);
 
-/// The largest standard deviation of a response that may be rounding instead of an effect.
+/// The largest standard deviation of a response (SI) that may be rounding instead of an effect. 0 for an energy.
 double effect_rounding(const AssemblyModel& model, const Response& response);
 
 }  // namespace poesy::assembly

@@ -16,12 +16,11 @@ struct Nominal {
   std::vector<Screw> load;            ///< [bodies] wrench of the load; 0 for the base
   std::vector<Screw> mismatch;  ///< [limbs] mismatch between the end of each limb and its body; 0 unless the file's
                                 ///< numbers are rounded
-  Matrix6 W;                    ///< metric of the platform's points
+  Matrix6 W;  ///< metric of the platform's points: xi^T W xi is their mean square displacement by a twist xi (m^2)
 };
 
-/// The assembly for displacements [joints] (rad, m) that close the loops. With Metric::platform the compliances C are
-/// W^-1, with the metric W of the platform's points, and there is no load; limbs in a row then have equal shares of C
-/// (limbs_in_a_row()).
+/// The assembly for displacements [joints] (rad, m) that close the loops. With Metric::platform there is no load, and
+/// the compliance C of a limb is W^-1, divided by the number of limbs in a row with it (limbs_in_a_row()).
 Nominal nominal(const Assembly& assembly, std::span<const double> displacements);
 
 /// [limbs] The number of limbs in a row with each limb, including itself. Limbs are in a row if they are connected

@@ -145,7 +145,7 @@ KernelMark PoseProblem::kernel_mark(const JointPlace& place) const {
   return {place.limb, static_cast<std::size_t>(mark_of(place)), kernel_joint(place, 0)};
 }
 
-/// Sets the data of a limb that do not depend on errors: joints that move or are reported, and the limb's equations.
+/// Sets the data of a limb that do not depend on errors: joints that are passive or reported, and the limb's equations.
 void PoseProblem::set_limb(const Equilibrium& equations, std::size_t e) {
   const Assembly& assembly = model_->assembly;
   const Limb& limb = assembly.limbs[e];
@@ -167,8 +167,9 @@ void PoseProblem::set_limb(const Equilibrium& equations, std::size_t e) {
   problem_.limbs.push_back(std::move(made));
 }
 
-/// Chooses the matrix of the steps (KernelStep). Each sample has matrices of its own, for which the data are set here,
-/// unless a limb has too many passive joints, or limbs have wrenches and one of the limbs is rigid in some direction.
+/// Chooses the matrix of the steps (KernelStep). Each sample has matrices of its own, for which the data are set here.
+/// There are two exceptions, in which all samples share the constant matrix: if a limb has too many passive joints, and
+/// if limbs have wrenches and one of the limbs is rigid in some direction.
 void PoseProblem::set_own_matrices(const Equilibrium& equations) {
   problem_.step = KernelStep::constant;
   for (const KernelLimb& limb : problem_.limbs) {
@@ -313,12 +314,12 @@ void PoseProblem::solve_first_order(const Equilibrium& equations) {
   }
 }
 
-/// A pointer to the first of a component's varied values in `values`.
+/// A pointer to the first value of a varied component in the array `values`.
 double* PoseProblem::row_of(const Entry& entry, std::size_t stride, std::vector<double>& values) {
   return values.data() + static_cast<std::size_t>(entry.row) * stride;
 }
 
-/// Sets the constant parts of all changed components.
+/// Sets the constant part of each component in entries_: the sum over the errors that do not vary.
 void PoseProblem::set_constants(const SampleBlock& samples) {
   for (Entry& entry : entries_) {
     entry.constant = 0.0;

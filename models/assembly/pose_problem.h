@@ -34,11 +34,13 @@ class PoseProblem {
   /// Returns true if the linear equations of the nominal pose have a unique solution.
   bool is_regular() const { return coordinates_.allFinite(); }
 
-  /// The problem with the errors of these samples, valid until the next call. scratch: receives the values of varied
-  /// components if the kernel cannot read them from the samples; it must exist as long as the problem is used.
+  /// The problem with the errors of these samples, valid until the next call. scratch: receives the values of the
+  /// varied components of frames' errors if the kernel cannot read them from the samples; must exist as long as the
+  /// problem is used.
   const KernelProblem& with(const SampleBlock& samples, std::vector<double>& scratch);
 
-  /// [varied components x padded(samples)] The varied values of the last call of with().
+  /// [varied components x padded(samples)] The values of the varied components of frames' errors, set by the last call
+  /// of with().
   const double* values() const { return values_; }
 
   /// [6 x 6] The matrix from twists in the kernel's units and axes to twists in the base frame (rad, m).
@@ -59,8 +61,8 @@ class PoseProblem {
     std::size_t frame;
     std::size_t component;  ///< index in [omega; v]
     double constant = 0.0;  ///< part of the component that does not vary
-    int row = -1;           ///< row of the component's values; -1 if it does not vary
-    double unit = 1.0;      ///< factor of the component's values
+    int row = -1;           ///< row of the component in the array values(); -1 if the component does not vary
+    double unit = 1.0;      ///< factor from the numbers in this row to the component
   };
 
   /// The kind of samples for which a Chebyshev series of starting points was computed.

@@ -115,8 +115,8 @@ void add_motions(Values& values, const Assembly& assembly, const Outcome& outcom
 void add_forces(Values& values, const Assembly& assembly, const Report& report, const Nominal& pose,
                 const Outcome& outcome) {
   double energy = 0.0;
-  // The mismatch is computed as C p, from compliance C and wrench p. Computed from poses, it would contain their
-  // rounding.
+  // The mismatch is computed as C p, from compliance C and wrench p. If it were computed from poses, it would contain
+  // their rounding errors.
   for (std::size_t e = 0; e < assembly.limbs.size(); ++e) {
     energy += 0.5 * outcome.wrenches[e].dot(pose.compliance[e] * outcome.wrenches[e]);
   }

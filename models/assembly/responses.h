@@ -19,13 +19,14 @@ struct ReportedJoint {
   std::string name;  ///< name of the joint in the file
 };
 
-/// The number of responses that state mismatch. They are the first responses of an assembly that deforms.
+/// The number of responses that measure mismatch: `gap`, `angular_deformation` and `linear_deformation`. If an assembly
+/// has them, they are its first responses.
 inline constexpr std::size_t kDeformations = 3;
 
-/// The responses of an assembly in addition to those that every assembly has.
+/// The optional responses of an assembly, among which its model chooses.
 struct Report {
-  std::vector<ReportedJoint> drives;     ///< actuated joints whose drive forces are responses
-  std::vector<ReportedJoint> reactions;  ///< joints whose reactions are responses
+  std::vector<ReportedJoint> drives;     ///< actuated joints whose drive forces are responses if limbs have stiffness
+  std::vector<ReportedJoint> reactions;  ///< joints whose reactions are responses if limbs have stiffness
   bool motions = true;                   ///< true if displacements of bodies are responses
 };
 
@@ -54,9 +55,9 @@ Outcome outcome_of(const Assembly& assembly, const Nominal& pose, const Solution
 Outcome outcome_of(const Assembly& assembly, const Nominal& pose, const Balance& balance, Eigen::Index column);
 
 /// Names, dimensions and meanings of the responses, in the order of response_values(). If the assembly can deform,
-/// `gap`, `angular_deformation` and `linear_deformation` come first. Then come the displacements of the platform and of
-/// the other bodies. If limbs have stiffness, `strain_energy`, the forces and moments of limbs, the forces of drives,
-/// and the reactions follow.
+/// `gap`, `angular_deformation` and `linear_deformation` come first. If Report::motions is true, the displacements of
+/// the platform, of the tool and of the other bodies follow. If limbs have stiffness, `strain_energy`, the forces and
+/// moments of limbs, the forces of drives, and the reactions follow.
 std::vector<Response> responses_of(const Assembly& assembly, const Report& report, bool deforms);
 
 /// The values of the responses in the order of responses_of(), SI.

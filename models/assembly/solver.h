@@ -33,8 +33,8 @@ struct SolverStart {
 ///
 /// for each limb e, with the symbols of Equilibrium, C and load of the nominal pose, and J in the present state. Each
 /// step solves the linear equations (Equilibrium) in the present state. Then it changes the pose T_b of each body b to
-/// exp(V_b) T_b, and the displacements q of the joints to q + dq. Uses plain double arithmetic: the reference for the
-/// kernels.
+/// exp(V_b) T_b, and the displacements q of the joints to q + dq. Uses plain double arithmetic, one sample at a time;
+/// tests compare the kernels with it.
 class Solver {
  public:
   /// The assembly must outlive this object. ranks: [limbs] rank of each limb's passive columns.
@@ -50,13 +50,13 @@ class Solver {
   /// Solves for frames with errors like the function above, but begins at `start` instead of the nominal pose.
   Solution solve(std::span<const std::vector<Transform>> frames, const SolverStart& start) const;
 
-  /// Solves for frames with errors from `start`, without load and only by full steps. The status is iteration_cap if
-  /// the first step is long, or if a later step is not much shorter than the step before. Then the solution may belong
-  /// to another way to assemble the machine.
+  /// Solves for frames with errors from `start`, without load and only by full steps. Gives up, with the status
+  /// iteration_cap, if the first step is long, or if a later step is not much shorter than the step before, because the
+  /// solution may then belong to another way to assemble the machine.
   Solution approach(std::span<const std::vector<Transform>> frames, const SolverStart& start) const;
 
  private:
-  /// The steps of an attempt.
+  /// How attempt() makes its steps.
   struct Manner {
     double damping = 1.0;      ///< factor of each step
     bool is_loaded = true;     ///< true if the load acts

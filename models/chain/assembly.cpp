@@ -140,7 +140,7 @@ bool Assembly::is_open(std::span<const lie::Transform<double>> frames, std::span
   return !is_positive(N - 2.0 * bend(part_), N.diagonal());
 }
 
-/// The symmetric part of the matrix C for a residual delta_mu (see the class's comment).
+/// The symmetric part of the matrix C(delta_mu) that the comment of the class Assembly describes.
 Eigen::MatrixXd Assembly::bend(std::span<const double> delta_mu) {
   using Screw = lie::Screw<double>;
   const std::span<const Screw> columns = loops_.columns();

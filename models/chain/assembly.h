@@ -15,7 +15,7 @@
 namespace poesy::chain {
 
 /// A bound on the first-order change of ln det(J^T W J) that the errors of a machine cause. If the change is below this
-/// negative number, the loops of the machine may open. They open at a change of about -1. J: columns of the passive
+/// negative number, the loops of the machine may open. They open at a change of about -1. J: Jacobian of the passive
 /// joints; W: metric; see Assembly::nearing().
 inline constexpr double kNearing = -0.5;
 
@@ -24,8 +24,8 @@ inline constexpr double kNearing = -0.5;
 /// can assemble: the displacements with the least mismatch. Here a metric W weighs the mismatch, and the joints descend
 /// to the least sum of |delta_mu|_W^2.
 ///
-/// Passive joints of the perfect mechanism can remove only a part of the mismatch; the limbs may keep the remainder. Of
-/// the mismatch delta_mu at which the joints come to rest, the removable part is
+/// Passive joints of the perfect mechanism can remove only a part of the mismatch; the remainder may deform the limbs.
+/// Of the mismatch delta_mu at which the joints come to rest, the removable part is
 ///     r = J0 (J0^T W J0)^-1 J0^T W delta_mu,   J0: J at nominal displacements without errors.
 /// In a machine that can be assembled, r is small: of the order of the mismatch times the errors. In a machine that
 /// cannot be assembled, r does not vanish: the joints rest although the loops are open. There is a motion x of the
@@ -37,8 +37,9 @@ inline constexpr double kNearing = -0.5;
 /// is not positive definite. This criterion does not depend on units or on the size of the machine. At its boundary the
 /// loops just close (theory.md, "Machines that cannot be assembled").
 ///
-/// Uses plain double arithmetic. The class is meant for two sorts of samples: those that a solver did not solve, and
-/// those with errors for which the loops may open (nearing()). Owns the scratch memory of one thread.
+/// Uses plain double arithmetic, one sample at a time. The class is meant for two sorts of samples: those that a solver
+/// did not solve, and those with errors for which the loops may open (nearing()). An object has scratch memory, so each
+/// thread needs its own object.
 class Assembly {
  public:
   /// The chain must outlive this object.
@@ -80,8 +81,8 @@ class Assembly {
   Loops loops_;
   std::vector<std::size_t> passive_;        ///< index of each passive joint among all joints
   std::vector<double> delta_mu_;            ///< [6 x pairs] mismatch at the displacements at which the joints rest
-  std::vector<double> part_;                ///< [6 x pairs] part r of the mismatch, see the class's comment
-  std::vector<lie::Screw<double>> pull_;    ///< [limbs] scratch
+  std::vector<double> part_;                ///< [6 x pairs] removable part r of the mismatch
+  std::vector<lie::Screw<double>> pull_;    ///< [limbs] scratch of bend(): sums of W delta_mu over the pairs of a limb
   std::vector<lie::Screw<double>> slopes_;  ///< [frames] gradient of ln det(J^T W J) by the errors of each frame
                                             ///< (FirstOrder::determinant_slopes()), if the perfect mechanism is regular
   std::unique_ptr<Descent> descent_;

@@ -18,8 +18,8 @@ enum class KernelPass {
   rescue      ///< a Newton step if its pivots are positive, else half a Gauss-Newton step
 };
 
-/// The shape of a chain of three limbs, compared in all pairs, with equal numbers of passive joints. The numbers are
-/// compile-time constants, so that loops unroll.
+/// The shape of a chain of three limbs with equal numbers of passive joints, whose platform poses are compared in all
+/// three pairs. The numbers are compile-time constants, so that loops unroll.
 template <std::size_t joints_per_limb>
 struct ThreeLimbs {
   static constexpr bool kFixed = true;  ///< the numbers of limbs, joints and pairs are constants
@@ -88,7 +88,8 @@ struct AnyShape {
 template <class T, class Shape>
 class BlockKernel {
  public:
-  /// Keeps references to all arguments. scratch: [kernel_scratch()], aligned to 64 bytes.
+  /// Copies the arguments; the memory to which they point must outlive this object. scratch: [kernel_scratch()],
+  /// aligned to 64 bytes.
   BlockKernel(const KernelChain& chain, const KernelSamples& samples, const KernelStart& start,
               const KernelOptions& options, const KernelOutcome& outcome, double* scratch);
 
@@ -139,8 +140,8 @@ class BlockKernel {
     T w[3];
     T v[3];
   };
-  /// The decisions of a round (one iteration of a batch of samples). Bit n of each member belongs to the sample in lane
-  /// n.
+  /// The decisions after a round (one iteration of a batch of samples). Bit n of each member belongs to the sample in
+  /// lane n.
   struct Verdict {
     unsigned converged = 0;
     unsigned stagnated = 0;
@@ -237,7 +238,7 @@ class BlockKernel {
   std::uint32_t* index_;  ///< index of each sample in the block
   std::uint32_t* left_;   ///< samples to solve; after a pass, the samples that it did not solve
 
-  // Values of the lanes that are being solved.
+  // Values of the batch that is being solved, one number in each lane.
   Motion* segment_;
   Motion* pose_;
   Screw* column_;

@@ -90,7 +90,7 @@ void BlockKernel<T, Shape>::newton_matrix() {
         const bool is_i = chain_.pair[n].i == b_limb;
         if (!is_i && chain_.pair[n].k != b_limb) continue;
         // The derivative of delta_mu by q_b is -sign_b (1 + ad^2/12) column_b - ad/2 column_b, with sign + in limb i
-        // and - in limb k. Row a multiplies it by -sign_a.
+        // and - in limb k. Row a of M is the product of this derivative with -sign_a column_a.
         const Screw once = kernel::bracket(mu[n], column[b]);
         const T half(is_i ? 0.5 : -0.5);
         const T twelfth(1.0 / 12.0);
@@ -120,7 +120,7 @@ void BlockKernel<T, Shape>::newton_matrix() {
 
 /// Factorises as L D L^T the symmetric matrix with the entries entry(a, b), b <= a. Stores L D below the diagonal of
 /// work_, L^T above it and 1 / D behind the matrix. Returns the smallest difference pivot - ratio x diagonal entry, or
-/// 1 if all are larger.
+/// 1 if all these differences are larger than 1.
 template <class T, class Shape>
 template <class Entry>
 T BlockKernel<T, Shape>::factor(Entry entry, double ratio) {

@@ -83,7 +83,7 @@ T BlockKernel<T, Shape>::varied(const KernelPiece& piece, int entry, std::size_t
   return row < 0 ? T(piece.error[entry]) : value(static_cast<std::size_t>(row), at);
 }
 
-/// The motion Delta g of a frame's error (Du et al. 2022, Eq. 26), or its inverse.
+/// The motion Delta g of a frame's error (Du et al. 2022, Eq. 26), or its inverse if the piece is inverted.
 template <class T, class Shape>
 auto BlockKernel<T, Shape>::error_motion(const KernelPiece& piece, std::size_t at) const -> Motion {
   T e[6];

@@ -192,8 +192,9 @@ std::size_t BlockKernel<T, Shape>::run(std::size_t count, std::uint32_t rounds) 
   return left;
 }
 
-/// Makes the values of all samples available in their order. Whole batches are read where they are. The samples of an
-/// incomplete last batch are copied to value_, and its unused lanes are filled with copies of the last sample.
+/// Prepares value() for all samples in their original order. Whole batches are later read directly from samples_. The
+/// samples of an incomplete last batch are copied to value_, and its unused lanes are filled with copies of the last
+/// sample.
 template <class T, class Shape>
 void BlockKernel<T, Shape>::load_all() {
   const std::size_t count = samples_.count;
@@ -352,8 +353,8 @@ auto BlockKernel<T, Shape>::newton_round(std::size_t at, std::uint32_t round) ->
   newton_matrix();
   auto safe = near & finite;
   if constexpr (pass == KernelPass::direct) {
-    // If a fit gave the start, the first step is small. The step stays on the branch of solutions of the fit's nodes,
-    // at which all steps were safe.
+    // If a fit gave the start, contracts() is not needed for the first step: this step is small and stays on the branch
+    // of the fit's nodes, at which all steps were safe.
     const auto fitted = T::load(flat_ + at) * T(round == 0 ? 1.0 : 0.0) < T(0.0);
     if (any(!fitted)) safe = safe & (fitted | contracts());
   } else if constexpr (pass == KernelPass::follow) {

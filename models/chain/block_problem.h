@@ -12,8 +12,9 @@
 
 namespace poesy::chain {
 
-/// A passive joint. Joints are ordered limb by limb, from base to platform. The displacement is counted from that in
-/// the perfect mechanism; the segment before the joint contains the motion of the joint in the perfect mechanism.
+/// A passive joint. Joints are ordered limb by limb, from base to platform. Displacements are counted from the nominal
+/// displacement in the perfect mechanism; the motion by the nominal displacement is part of the segment before the
+/// joint.
 struct KernelJoint {
   bool revolute;   ///< revolute or helical if true, else prismatic
   double advance;  ///< advance along the axis of a helical joint (which has revolute = true), m per rad; else 0
@@ -26,7 +27,7 @@ struct KernelPiece {
   bool is_error;        ///< error of a frame if true, else a constant motion
   bool turns;           ///< true if the error has a rotation
   bool inverted;        ///< true if the inverse of the error is applied
-  double constant[12];  ///< for a constant motion: rotation matrix row by row, then translation
+  double constant[12];  ///< for a constant motion: rotation matrix row by row, then translation (m)
   double error[6];      ///< for an error: its constant part [omega; v] (rad, m)
   /// Row of KernelSamples::values with the values of each component of the error; -1 if the component is constant.
   int varied_row[6];
@@ -92,7 +93,7 @@ struct KernelStart {
   std::size_t fits;      ///< number of fits
 };
 
-/// The number of coordinates of a KernelMap is a multiple of this; coordinates that are added to reach a multiple are
+/// The number of coordinates of a KernelMap is a multiple of this; coordinates that only fill up the last multiple are
 /// zero.
 inline constexpr std::size_t kMapRows = 3;
 
@@ -110,13 +111,13 @@ struct KernelMap {
 /// the platform by xi_i = log(g_i g_nominal^-1). The motion of the platform is the mean xi of all xi_i; its
 /// displacement is D = exp(xi).
 struct KernelPlatform {
-  double nominal[12];  ///< platform pose without errors: rotation matrix row by row, then translation
-  double tool[3];      ///< tool point, the second reported point; valid if has_tool
+  double nominal[12];  ///< pose base_T_platform without errors: rotation matrix row by row, then translation (m)
+  double tool[3];      ///< tool point (m, base frame), the second reported point; valid if has_tool
   bool has_tool;       ///< true if a tool point is reported
   /// [joints x stride] Solved displacements of the passive joints; unused if there is a map.
   const double* displacements;
   const KernelMap* map;  ///< first order: map to the 6 components of xi; null: solved displacements are used
-  double* responses;     ///< [platform_rows() x stride] displacements of the platform and the tool
+  double* responses;     ///< [platform_rows() x stride] displacements of the platform and the tool (m, rad)
 };
 
 /// The number of rows of KernelPlatform::responses: x, y, z of D p - p, where D is the platform's displacement and p
@@ -134,8 +135,8 @@ enum class KernelMethod {
 struct KernelOptions {
   KernelMethod method;           ///< method of iteration
   double tolerance;              ///< tolerance on the change of the residual in an iteration (rad, m)
-  double rounding_level;         ///< a change below this may be rounding
-  double last_step;              ///< a safe Newton step shorter than this is the last one
+  double rounding_level;         ///< a change of the residual below this may be rounding (rad, m)
+  double last_step;              ///< a safe Newton step shorter than this is the last one (rad, m)
   double largest_step;           ///< longest Newton step of the passes direct and rescue (rad, m)
   std::uint32_t max_iterations;  ///< number of iterations after which a sample is given up
 };
@@ -143,9 +144,9 @@ struct KernelOptions {
 /// The results of a block, with one value for each sample in each row. The stride is at least kernel_capacity(count),
 /// because numbers behind the last sample are overwritten.
 struct KernelOutcome {
-  double* delta_mu;           ///< [6 pairs x stride] residuals
-  double* responses;          ///< [3 x stride] angular, linear and largest deformation
-  double* displacements;      ///< [joints x stride] displacements of the passive joints; null if not wanted
+  double* delta_mu;           ///< [6 pairs x stride] residuals (rad, m)
+  double* responses;          ///< [3 x stride] angular (rad), linear (m) and largest deformation
+  double* displacements;      ///< [joints x stride] displacements of the passive joints (rad, m); null if not wanted
   SolveStatus* status;        ///< [stride] status of each sample
   std::uint32_t* iterations;  ///< [stride] iterations of each sample
   std::size_t stride;         ///< distance between rows, in numbers

@@ -199,7 +199,8 @@ void for_each_constant(std::span<const FrameError<double>> errors, std::span<con
 }
 
 /// Computes the first-order effects of errors in coordinates of the residual space, whose number is padded to a
-/// multiple of kMapRows. The constant part includes the mismatch between perfect limbs that rounded numbers leave.
+/// multiple of kMapRows. The constant part includes the mismatch that perfect limbs have if the numbers of their file
+/// are rounded.
 void BlockSolver::find_map(std::span<const double> displacements, std::span<const FrameError<double>> errors,
                            std::span<const FrameEntry> varied) {
   residual_space_.prepare(first_order_);
@@ -255,12 +256,12 @@ void BlockSolver::find_platform_map(std::span<const FrameError<double>> errors, 
 }
 
 /// Fits starting points over a range of the varied error. If the fit is not good enough, the function fits both halves
-/// of the range instead.
+/// of the range.
 void BlockSolver::predict_starts(double center, double half_width, int splits_left) {
   const double tail = fit_starts(center, half_width);
   if (tail < kGoodTail || (splits_left == 0 && tail < kTrustedTail)) return;
-  // If this fit is usable, the solves at the nodes of both halves start from it. Then the fits of the halves replace
-  // it.
+  // If this fit is usable, the solves at the nodes of both halves start from it. Afterwards this fit is removed,
+  // because the fits of the halves replace it.
   const bool useful = tail < kTrustedTail;
   if (!useful) fits_.pop_back();
   if (splits_left == 0) return;

@@ -21,9 +21,9 @@ enum class Fidelity : std::size_t {
 };
 
 /// Solves blocks of samples with the fastest kernel that this machine supports. BlockKernel states the methods and
-/// their guarantees; the method gauss_newton is Scheme I as in DeformationSolver. Assembly decides which samples are
-/// not_assembled, among those that the kernel does not solve and those with errors for which loops may open. Owns the
-/// scratch memory of one thread.
+/// their guarantees; the method gauss_newton is Scheme I as in DeformationSolver. Samples that the kernel does not
+/// solve, and samples with errors for which loops may open, are examined by Assembly, which may give them the status
+/// not_assembled. An object has scratch memory, so each thread needs its own object.
 class BlockSolver {
  public:
   /// The chain must outlive the solver.
@@ -42,9 +42,10 @@ class BlockSolver {
   /// singular at a singular pose.
   void solve(std::span<const double> values, std::size_t count);
 
-  /// [count] A component of the residuals of the last block. row: 6 n + k for component k of the n-th pair of limbs.
+  /// [count] A component of the residuals (rad, m) of the last block. row: 6 n + k for component k of the n-th pair of
+  /// limbs.
   std::span<const double> delta_mu(std::size_t row) const { return row_of(delta_mu_, row); }
-  /// [count] A response of the last block. row: 0 angular, 1 linear, 2 largest deformation.
+  /// [count] A response of the last block. row: 0 angular (rad), 1 linear (m), 2 largest deformation.
   std::span<const double> response(std::size_t row) const { return row_of(responses_, row); }
   /// [count] A displacement of the platform in the last block. row: index in the list of platform_rows().
   std::span<const double> platform(std::size_t row) const { return row_of(platform_responses_, row); }
@@ -87,14 +88,15 @@ class BlockSolver {
   FirstOrder first_order_;
   ResidualSpace residual_space_;
   Assembly assembly_;
-  /// [frames] Errors of the frames: first the constant ones, then those of one sample.
+  /// [frames] Errors of the frames: the constant components as set by prepare(), the varied ones as last set by
+  /// set_frames().
   std::vector<FrameError<double>> errors_;
   std::vector<FrameEntry> entries_;             ///< components of frames' errors that vary
   std::vector<lie::Transform<double>> frames_;  ///< [frames] fixed frames of one sample, with its errors
   std::vector<double> nearing_;                 ///< [varied] Assembly::nearing() of each varied component
   double nearing_constant_ = 0.0;               ///< sum of Assembly::nearing() x error over the constant errors
   std::vector<double> nearing_of_;  ///< [count] sum of Assembly::nearing() x error over all errors of each sample
-  bool is_singular_ = false;        ///< true if the passive joints are singular: no first order exists
+  bool is_singular_ = false;        ///< true if no first-order map exists, because passive joints are singular
   std::vector<double> effect_;      ///< [6 x pairs] delta_mu per unit of one error
   std::vector<double> slope_;       ///< [joints] displacements of the passive joints per unit of one error
   const PlatformPoints* platform_ = nullptr;
@@ -114,7 +116,7 @@ class BlockSolver {
   std::vector<KernelPiece> pieces_;
   std::size_t first_piece_ = 0;
   std::size_t varied_ = 0;
-  std::vector<double> cosines_;  ///< value of each Chebyshev polynomial at each node
+  std::vector<double> cosines_;  ///< [kStartTerms x kStartTerms] value of each Chebyshev polynomial at each node
   std::vector<KernelFit> fits_;
   std::size_t fits_made_ = 0;
   std::vector<double> coefficients_;  ///< coefficients of all possible fits, one fit after the other

@@ -63,8 +63,8 @@ class DeformationEvaluator final : public Evaluator {
   }
 
  private:
-  /// The largest number of poses whose Nominal is kept. Inverse kinematics may be iterative, and later samples use the
-  /// same poses again.
+  /// The largest number of poses whose Nominal is kept for later samples, because inverse kinematics may be iterative
+  /// and so take long.
   static constexpr std::size_t kMostPoses = 1024;
 
   const Nominal& nominal_at(std::span<const double> pose) {

@@ -26,7 +26,7 @@ struct PlatformReport {
 /// A parallel chain as a model. Its responses are the deformations of its limbs (Du et al. 2022), the displacement of
 /// its platform, or both.
 struct DeformationModel {
-  ParallelChain chain;            ///< limbs without errors, and the pairs in which they are compared
+  ParallelChain chain;            ///< limbs without errors, and the pairs of limbs whose platform poses are compared
   std::vector<ErrorTerms> terms;  ///< [errors] terms of each error
   /// Nominal displacements of all joints at a reachable pose, limb by limb (rad, m).
   std::function<std::vector<double>(std::span<const double> pose)> joint_displacements;

@@ -23,10 +23,10 @@ struct Deformation {
 /// The step and the residual of one iteration.
 struct DeformationIteration {
   std::span<const double> step;      ///< [passive joints] change of the passive displacements (rad, m)
-  std::span<const double> delta_mu;  ///< [6 x pairs] residual after the step
+  std::span<const double> delta_mu;  ///< [6 x pairs] residual after the step (rad, m)
   double change;  ///< largest change of the residual (rad, m): c_j in the stopping rule of DeformationSolver
 };
-/// Called after each iteration.
+/// A function that the solver calls after each iteration.
 using DeformationObserver = std::function<void(const DeformationIteration&)>;
 
 /// The level below which a change of the residual (rad, m) may be rounding: 64 eps x max(1, reach in m). Rounding
@@ -47,8 +47,8 @@ double rounding_level(const ParallelChain& chain);
 /// If Assembly finds that the machine cannot be assembled, the status is not_assembled instead, except after
 /// non_finite.
 ///
-/// Uses plain double arithmetic, one sample at a time: the reference for BlockSolver. Owns the scratch memory of one
-/// thread.
+/// Uses plain double arithmetic, one sample at a time; tests compare BlockSolver with it. An object has scratch memory,
+/// so each thread needs its own object.
 class DeformationSolver {
  public:
   /// The chain must outlive the solver.

@@ -18,7 +18,7 @@ class FirstOrder {
   explicit FirstOrder(const ParallelChain& chain);
 
   /// Sets the nominal displacements [all joints] (rad, m) and the weight W (null: W = 1). Returns false if the Jacobian
-  /// of the passive joints is singular; then there is no first order.
+  /// of the passive joints is singular; then first-order effects do not exist.
   bool prepare(std::span<const double> displacements, const lie::Matrix6<double>* W);
 
   /// Computes the effect per unit of one component of a frame's error (SI per rad or m): delta_mu [6 x pairs] and
@@ -61,14 +61,14 @@ class FirstOrder {
   const ParallelChain* chain_;
   std::vector<std::size_t> limb_of_frame_;
   std::vector<std::size_t> limb_of_joint_;  ///< [passive joints] limb of each joint
-  /// [frames] Matrix from a frame's error to the motion of the limb's platform.
+  /// [frames] Matrix from a frame's error to the motion of the limb's platform, both [omega; v].
   std::vector<lie::Matrix6<double>> from_error_;
   std::vector<lie::Screw<double>> columns_;  ///< [passive joints] columns of the Jacobian J of the passive joints
   std::vector<double> no_mismatch_;          ///< [6 x pairs] zeros
   std::vector<double> unit_;                 ///< [passive joints] scratch: a unit displacement of one joint
-  std::vector<double> by_joint_;             ///< [passive joints] scratch
-  std::vector<double> mismatch_;             ///< [6 x pairs] scratch
-  std::vector<lie::Screw<double>> pull_;     ///< [limbs] scratch
+  std::vector<double> by_joint_;             ///< [passive joints] scratch of determinant_slopes()
+  std::vector<double> mismatch_;             ///< [6 x pairs] scratch of pull_of()
+  std::vector<lie::Screw<double>> pull_;     ///< [limbs] result of pull_of()
   lie::Matrix6<double> W_;
   NormalEquations equations_;
 };

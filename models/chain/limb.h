@@ -61,8 +61,8 @@ std::vector<LimbPair> pairs_of(std::size_t limbs);
 
 /// Limbs that carry one platform, and the pairs in which their platform poses are compared.
 struct ParallelChain {
-  std::vector<Limb> limbs;      ///< limbs; lists of joints and of frames have the same order
-  std::vector<LimbPair> pairs;  ///< pairs of limbs; lists of residuals have the same order
+  std::vector<Limb> limbs;      ///< limbs; lists of all joints or of all frames go limb by limb, in this order
+  std::vector<LimbPair> pairs;  ///< pairs of limbs; lists of residuals go pair by pair, in this order
   /// The number of idle freedoms: motions of passive joints that do not move the platform, such as the spin of a leg
   /// between two spherical joints.
   std::size_t idle = 0;

@@ -8,7 +8,7 @@
 namespace poesy::chain {
 
 /// The mismatch of the limbs of a chain, and the Jacobian columns of its passive joints. Uses plain double arithmetic,
-/// one sample at a time. Owns the scratch memory of one thread.
+/// one sample at a time. An object has scratch memory, so each thread needs its own object.
 class Loops {
  public:
   /// The chain must outlive this object.

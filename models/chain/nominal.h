@@ -10,7 +10,7 @@
 namespace poesy::chain {
 
 /// Displacements [all joints] (rad, m) near the given ones that solve J^T delta_mu = 0 with unchanged drives and
-/// without errors.
+/// without errors. If the solver does not converge, the displacements before the failed solve.
 std::vector<double> settled(const ParallelChain& chain, std::vector<double> displacements);
 
 /// The mean pose base_T_platform g of the limbs' platform poses g_i. It is defined by sum log(g_i g^-1) = 0.

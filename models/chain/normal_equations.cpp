@@ -125,7 +125,7 @@ bool NormalEquations::factor() {
       const double* b = matrix_.data() + column * size_;
       double sum = a[column];
       for (std::size_t k = 0; k < column; ++k) sum -= a[k] * b[k];
-      a[column] = sum;  // this is L D; below it is divided by D
+      a[column] = sum;  // entry of L D; the loop over k below divides it by D
     }
     const double diagonal = a[row];
     double pivot = diagonal;

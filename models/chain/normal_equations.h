@@ -9,9 +9,9 @@
 
 namespace poesy::chain {
 
-/// The normal equations J^T W J x = J^T W delta_mu, which for W = 1 are Eq. 44 of Du et al. 2022. They are built from
-/// the columns of the limbs. The matrix J of Eq. 43 contains each column twice, with opposite signs, and is never
-/// formed.
+/// The normal equations J^T W J x = J^T W delta_mu, which for W = 1 are Eq. 44 of Du et al. 2022. They are computed
+/// from the columns of the passive joints. The matrix J of Eq. 43, which repeats a column for every pair that contains
+/// the limb, is never formed.
 class NormalEquations {
  public:
   /// Allocates scratch memory for chains with the limbs, joints and pairs of this chain.

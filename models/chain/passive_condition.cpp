@@ -8,7 +8,7 @@
 namespace poesy::chain {
 namespace {
 
-/// The screw of a joint with lengths in units of the reach.
+/// The screw of a joint, with lengths in units of the chain's reach.
 lie::Screw<double> in_reaches(const lie::Screw<double>& spatial, double reach) {
   const bool prismatic = spatial.head<3>().isZero(0.0);
   lie::Screw<double> scaled = spatial;

@@ -26,7 +26,7 @@ lie::Screw<double> mean_motion(const ParallelChain& chain, std::span<const lie::
                                std::span<const double> displacements, const lie::Transform<double>& nominal);
 
 /// The displacements [points.rows()] of the points by D = exp(xi), or by 1 + xi to first order; see platform_rows().
-/// Plain double arithmetic: the reference for the kernels.
+/// Uses plain double arithmetic; tests compare the kernels with it.
 std::vector<double> platform_displacement(const lie::Screw<double>& xi, const PlatformPoints& points, bool is_linear);
 
 }  // namespace poesy::chain

@@ -9,10 +9,10 @@
 
 namespace poesy::chain {
 
-/// First-order residuals in few coordinates. Consider L limbs with F passive joints in total. The mismatch that no
-/// joint can remove has D = 6 (L - 1) - F independent components; D is the degree of over-constraint. The vector y [D]
-/// has their coordinates in an orthonormal basis, so |y|^2 = sum of |delta_mu|^2 over the pairs. The effect of an error
-/// thus takes D numbers instead of six for each pair.
+/// Describes first-order residuals by few coordinates. Consider L limbs with F passive joints in total. The mismatch
+/// that no joint can remove has D = 6 (L - 1) - F independent components; D is the degree of over-constraint. The
+/// vector y [D] has their coordinates in an orthonormal basis, so |y|^2 = sum of |delta_mu|^2 over the pairs. The
+/// effect of an error thus takes D numbers instead of six for each pair.
 class ResidualSpace {
  public:
   /// Allocates scratch memory for the chain, which must outlive this object. Precondition: the chain's pairs connect
@@ -40,7 +40,7 @@ class ResidualSpace {
   Eigen::MatrixXd independent_;
   Eigen::MatrixXd of_pairs_;              ///< [pairs, L - 1] matrix P with incidence matrix = P N
   std::size_t dimensions_ = 0;            ///< number D of dimensions of the residual space
-  Eigen::MatrixXd columns_;               ///< [6 (L - 1), passive joints] columns of the joints
+  Eigen::MatrixXd columns_;               ///< [6 (L - 1), passive joints] N times the columns of the joints
   Eigen::MatrixXd basis_;                 ///< orthonormal basis of the complement of columns_
   std::vector<Eigen::MatrixXd> of_limb_;  ///< for each limb, the matrix from a motion of its end to y
   Eigen::MatrixXd delta_mu_;

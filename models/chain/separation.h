@@ -13,7 +13,7 @@ namespace poesy::chain {
 /// mechanism by B_i xi, the mean of the motions of all limbs' platforms. Let V_i be the columns of the limb's passive
 /// joints, and A_i those of its drives. Then xi splits into
 ///
-///     xi = V_i u + A_i a + n, u and a such that |n|_i is as small as possible
+///     xi = V_i u + A_i a + n, with u and a such that |n|_i is as small as possible
 ///     drive = |B_i A_i a|, constraint = |B_i n|, effect = |B_i xi|
 ///     residual = min over dq of |B_i xi + sum over all limbs of B_k A_k dq_k|
 ///
@@ -33,12 +33,13 @@ namespace poesy::chain {
 Separation separation(const DeformationModel& model, std::span<const double> pose);
 
 /// The projection [6 x 6] of a displacement of the platform onto the part that remains after the best correction of all
-/// drives. The displacement is [theta; displacement of the platform's origin] (rad, m) in the base frame. The remainder
-/// is the least in the norm of separation(): for the effect of an error, the norm of the remainder is the residual of
-/// separation(). Returns no value at a pose at which passive joints are singular. Precondition as for separation().
+/// drives. The displacement is [theta; displacement of the platform's origin] (rad, m) in the base frame. The
+/// correction makes the norm of the remainder (the norm of separation()) as small as possible. If the displacement is
+/// the effect of an error, the norm of the remainder is the residual of separation(). Returns no value at a pose at
+/// which passive joints are singular. Precondition as for separation().
 std::optional<lie::Matrix6<double>> left_by_drives(const DeformationModel& model, std::span<const double> pose);
 
-/// The motions of a limb that separation_of() needs, at a pose of the perfect mechanism.
+/// The motions of a limb that separation_of() needs, at a pose of the perfect mechanism, in the base frame.
 struct LimbMotions {
   using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;  ///< twists [omega; v], one in each column
 
@@ -55,7 +56,7 @@ struct LimbMotions {
 /// The twist of a limb's end per unit of an error, if no joint moves. An error may twist the ends of several limbs.
 struct EndTwist {
   std::size_t limb;          ///< index of the limb
-  lie::Screw<double> twist;  ///< twist of the limb's end
+  lie::Screw<double> twist;  ///< twist [omega; v] of the limb's end, in the base frame
 };
 
 /// Adds the twist of a limb's end to the list `twists` of one error. If the list has a twist of this limb, the two are

@@ -10,9 +10,9 @@ namespace poesy::chain {
 
 /// Completes a sketch with named joints at nominal displacements [all joints] (rad, m): sets the points and axes of
 /// joints, platform and tool, the frames, and the errors. In a limb of n joints, an error of frame j < n is measured in
-/// frame j, and an error of frame n in the platform (frame_with_error). With errors_at_joints the frames of base and
-/// platform are drawn at the first and the last joint, about which errors rotate. Precondition: SketchedJoint::first
-/// and SketchedJoint::frame are indices of frames of the model's chain.
+/// frame j, and an error of frame n in the platform's frame (frame_with_error). With errors_at_joints the frames of
+/// base and platform are drawn at the first and the last joint, about which errors rotate. Precondition:
+/// SketchedJoint::first and SketchedJoint::frame are indices of frames of the model's chain.
 void place(Sketch& sketch, const DeformationModel& model, std::span<const double> displacements);
 
 /// The frames of a limb (base_T_frame) before and after each joint has moved.

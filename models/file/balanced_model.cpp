@@ -32,8 +32,8 @@ assembly::Assembly assembly_of(const Mechanism& mechanism, assembly::Metric metr
   return made;
 }
 
-/// The name of the drive of joint j: the name of the joint in the file. If two drives hold one joint, such as a
-/// cylindrical joint, the direction is added: "q_rz", "q_z".
+/// The name of the drive of joint j: the name of the joint in the file. If two drives hold one joint of the file, such
+/// as a cylindrical joint, the direction is appended: "q_rz", "q_z".
 std::string drive_name(const std::vector<Joint>& joints, std::size_t j) {
   const auto is_of_it = [&](const Joint& one) { return one.name == joints[j].name && one.actuated; };
   if (std::ranges::count_if(joints, is_of_it) == 1) return joints[j].name;

@@ -6,7 +6,7 @@
 #include "engine/model/model.h"
 #include "models/file/tracking.h"
 
-/// Charts: alternative coordinates for the poses of a mechanism of a file.
+/// Charts: alternative coordinates for the poses of a mechanism that a file describes.
 namespace poesy::file {
 
 /// Alternative coordinates of a pose. They determine the pose as the mechanism's own coordinates do; track() finds the
@@ -21,8 +21,8 @@ class Chart {
   /// The names, dimensions and descriptions of the coordinates.
   const PoseChart& description() const { return description_; }
 
-  /// Follows the path from home that is straight in the coordinates of this chart, to these values of them (SI). All
-  /// other computations follow the path that is straight in the mechanism's own coordinates. If the two paths lead to
+  /// Follows the path from home to these coordinates (SI) that is straight in the coordinates of this chart. All other
+  /// computations follow the path that is straight in the mechanism's own coordinates. If the two paths lead to
   /// different working modes, the pose counts as unreachable.
   Tracked track(std::span<const double> coordinates) const;
 

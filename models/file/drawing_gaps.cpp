@@ -36,8 +36,10 @@ Matrix complement(const Matrix& A) { return null_space(A.transpose()); }
 
 /// The geometry of a limb at a pose, with lengths in units of the reach.
 struct PlacedLimb {
-  std::vector<Transform> parts;  ///< [joints + 1] base_T_part, for each frame of the limb the pose of its part
-  Matrix passive;                ///< [6 x passive joints] twists of the passive joints at the base's origin
+  /// [joints + 1] base_T_part for each fixed frame of the limb: pose of the part in whose axes the errors of the frame
+  /// are stated.
+  std::vector<Transform> parts;
+  Matrix passive;  ///< [6 x passive joints] twists of the passive joints at the base's origin
 };
 
 PlacedLimb placed(const Limb& limb, std::span<const double> displacements, const Transform& from) {
@@ -179,8 +181,8 @@ struct Directions {
   Matrix turns;          ///< axes of rotation, whatever displacement accompanies the rotation
 };
 
-/// The directions of displacement and rotation that these twists of a part (columns) do not span. They do not depend on
-/// the point about which the twists rotate.
+/// The directions of displacement and rotation that these twists of a part (columns) do not span. The result does not
+/// depend on the point about which the twists rotate.
 Directions not_spanned(const Matrix& columns) {
   const Matrix spanned = complement(complement(columns));
   const Matrix turns = spanned.topRows(3);
@@ -236,7 +238,8 @@ std::string body_words(const Mechanism& mechanism, std::size_t body) {
   return body == kPlatform ? "the platform" : "body '" + mechanism.bodies[body].name + "'";
 }
 
-/// The name of the part to which a frame's errors belong; empty if the joint there has no such part.
+/// The name of the part to which a frame's errors belong; empty between the axes of a spherical or cylindrical joint,
+/// where there is no part.
 std::string part_words(const Mechanism& mechanism, const Limb& limb, std::size_t frame) {
   const std::size_t joints = limb.joints.size();
   if (frame > 0 && frame < joints && limb.joints[frame - 1].name == limb.joints[frame].name) {
@@ -256,7 +259,7 @@ std::string limbs_words(const Mechanism& mechanism, const std::vector<std::size_
   return "limbs " + listed(labels);
 }
 
-/// A clause, and the limbs for which it holds.
+/// A clause, and the indices of the limbs for which it holds.
 struct SaidByLimbs {
   std::string words;
   std::vector<std::size_t> limbs;

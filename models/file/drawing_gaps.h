@@ -18,8 +18,8 @@ namespace poesy::file {
 std::vector<std::string> uncovered_directions(const Mechanism& mechanism);
 
 /// Clauses about zones that say less than they seem to: a location or an orientation without datums, and an orientation
-/// zone that is not narrower than the location zone of the feature already demands. Also about a distance whose nominal
-/// size is less than half or more than twice the length of its part in that direction.
+/// zone that is not narrower than what the feature's location zone allows. There are also clauses about a distance
+/// whose nominal size is less than half or more than twice the length of its part in that direction.
 std::vector<std::string> doubtful_zones(const Mechanism& mechanism);
 
 /// A clause about a clearance in an over-constrained mechanism, in which it adds to the mismatch between limbs although

@@ -37,7 +37,7 @@ bool is_unit_of_geometry(std::string_view name) {
 /// the text on.
 class Parser {
  public:
-  /// due: the dimension (powers of units) that the value must have, if it is known, for messages.
+  /// due: the dimension (powers of units) that the value must have, for messages; all powers are 0 if it is not known.
   Parser(const Expression& expression, std::span<const GeometryParameter> parameters, std::span<const double> values,
          const Powers& due)
       : expression_(expression), text_(expression.text), parameters_(parameters), values_(values), due_(due) {}
@@ -60,8 +60,8 @@ class Parser {
     throw InputError(place, expression_.key + " '" + printable(text_, 120) + "' " + problem, remedy);
   }
 
-  /// The parameters whose values are not those of the file, because they may be in a wrong unit: " with R = 120000 mm
-  /// (the file has 120 mm)". Empty if there are none.
+  /// Text for messages that lists the parameters whose values differ from the file's, because a study may have stated
+  /// them in a wrong unit: " with R = 120000 mm (the file has 120 mm)". Empty if there are none.
   std::string changed_text() const {
     std::string text;
     for (std::size_t p = 0; p < std::min(parameters_.size(), values_.size()); ++p) {

@@ -54,12 +54,13 @@ std::string why_no_parameter(std::string_view name);
 Value evaluate(const Expression& expression, std::span<const GeometryParameter> parameters,
                std::span<const double> values);
 
-/// The SI value of an expression for a length, an angle or a number. Also throws InputError if the expression has
-/// another dimension than `wanted`.
+/// The SI value of an expression of the dimension `wanted`. Also throws InputError if the expression has another
+/// dimension.
 double evaluate(const Expression& expression, Dimension wanted, std::span<const GeometryParameter> parameters,
                 std::span<const double> values);
 
-/// The SI value of an expression for a quantity. Also throws InputError if the expression has another dimension.
+/// The SI value of an expression of the quantity `wanted`. Also throws InputError if the expression has another
+/// dimension.
 double evaluate(const Expression& expression, const Physical& wanted, std::span<const GeometryParameter> parameters,
                 std::span<const double> values);
 

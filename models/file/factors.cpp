@@ -65,8 +65,9 @@ Factor factor(const Mechanism& mechanism, const chain::ErrorTerm& term, std::str
           std::move(axis)};
 }
 
-/// The terms of an angular error of a limb's first or last frame that rotates about the point c of the joint there. The
-/// solver rotates it about the origin of the body, so the terms are [epsilon; c x epsilon].
+/// The terms of an error of a frame. Most errors have the given term alone. An angular error epsilon of a limb's first
+/// or last frame may have to rotate about the point c of the joint there, while the solver rotates it about the origin
+/// of the body. It then has the terms [epsilon; c x epsilon].
 chain::ErrorTerms about_joint(const Mechanism& mechanism, const chain::ErrorTerm& term) {
   chain::ErrorTerms list{term};
   const Limb& limb = mechanism.limbs[term.limb];
@@ -142,11 +143,11 @@ std::string number_suffix(const SlotLines& slot, std::size_t k) {
   return slot.numbers[k] == 0 ? "" : "_" + std::to_string(slot.numbers[k]);
 }
 
-/// The way in which an error of a limb grows with the displacement of a joint, if it does.
+/// Whether and how an error of a limb grows with the displacement of a joint.
 struct Growth {
   /// Displacement to which the error is proportional; none if the error is the same at all poses.
   std::optional<chain::JointWay> way = {};
-  /// Power of m of the displacement: 1 if the joint slides, 0 if it rotates.
+  /// Power of m in the unit of the displacement: 1 if the joint slides, 0 if it rotates.
   int length = 0;
   std::string text = {};  ///< text for descriptions: ", grows with q, from home"
 
@@ -233,8 +234,9 @@ void add_vector(const ErrorLines& error, const Numbers& numbers, Mechanism& mech
 /// The terms of one error, and its dimension.
 struct Combination {
   chain::ErrorTerms terms;
-  std::optional<int> length;  ///< power of m of the error: 1 for a length, 0 for an angle; none while it is not known
-  std::string growth = {};    ///< text that says how the error grows; empty if it does not grow
+  /// Power of m in the unit of the error: 1 for a length, 0 for an angle; none while it is not known.
+  std::optional<int> length;
+  std::string growth = {};  ///< text that says how the error grows; empty if it does not grow
 };
 
 std::string measure_text(int length) { return length == 1 ? "a length" : "an angle"; }

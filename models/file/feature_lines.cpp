@@ -20,7 +20,7 @@ void check_modifiers(const StudyValue& value, const std::string& text) {
   }
 }
 
-/// Throws if a number has a sign before it as in drawings. The message says what to write instead.
+/// Throws if the text has a diameter sign or a plus-minus sign, as on drawings. The message says what to write instead.
 void check_signs(std::string_view key, const StudyValue& value) {
   if (!value.is_text()) return;
   const std::string text = value.text();

@@ -16,7 +16,8 @@ namespace poesy::file {
 enum class FeatureWord { axis, plane, point, distance };
 std::string_view name(FeatureWord kind);  ///< "axis", "plane", "point" or "distance".
 
-/// The side of a joint on which the part with a feature is.
+/// The position of the part with a feature: before or after the joint to which the feature belongs, in the order of the
+/// limb.
 enum class PartSide { before, after };
 std::string_view name(PartSide side);  ///< "before" or "after".
 
@@ -45,7 +46,7 @@ struct FeatureLines {
   /// If `joint` has several axes, the number of the feature's axis, counted from 1. The default is the first axis, but
   /// the last one for a part after a joint other than U.
   std::optional<std::size_t> axis;
-  PartSide part = PartSide::before;    ///< side of the joint on which the feature's part is
+  PartSide part = PartSide::before;    ///< position of the feature's part relative to the joint
   std::optional<Triple> at;            ///< middle of the feature
   std::optional<Reference> at_point;   ///< middle of the feature, as a named point
   std::optional<Expression> length;    ///< length of an axis

@@ -20,7 +20,8 @@ namespace {
 using Matrix3 = lie::Matrix3<double>;
 using Eigen::Index;
 
-/// A component of an error that is smaller than this share of the largest counts as rounding.
+/// A component of a rotation or displacement counts as rounding if it is at most this share of the whole rotation or
+/// displacement.
 constexpr double kRounding = 1e-13;
 
 constexpr std::string_view kAxisLetters = "xyz";
@@ -41,14 +42,14 @@ struct FeaturePart {
   bool inverse;       ///< true if the error of the frame is the inverse of the feature's displacement
 };
 
-/// An error of a feature: how the feature's middle moves and how the feature rotates, per metre of the error and in the
-/// feature's axes.
+/// An error of a feature: the displacement of the feature's middle and the rotation of the feature, per metre of the
+/// error and in the feature's axes.
 struct FeatureError {
-  FeatureDirection direction;  ///< direction in the name
+  FeatureDirection direction;  ///< direction that the name of the error states
   Vector3 turn;                ///< rotation, rad/m
   Vector3 shift;               ///< displacement of the middle, m/m
   bool is_tilt;                ///< true if the error rotates the feature
-  Index axis;                  ///< axis of the feature that is in the name: 0, 1, 2
+  Index axis;                  ///< axis of the feature that the name of the error states: 0, 1, 2 for x, y, z
   std::string text;            ///< description: "leans to x: its far end against its near end, 500 mm apart"
 };
 
@@ -58,7 +59,7 @@ FeatureError shift(FeatureDirection direction, Index axis, std::string text) {
   return {direction, Vector3::Zero(), Vector3::Unit(axis), false, axis, std::move(text)};
 }
 
-/// All possible errors of a feature of this kind and size (m), in order.
+/// All possible errors of a feature of this kind and size (m).
 std::vector<FeatureError> all_errors(FeatureKind kind, const std::array<double, 2>& size) {
   const auto lean = [&](FeatureDirection direction, const Vector3& turn, Index axis) {
     return FeatureError{direction,
@@ -171,8 +172,8 @@ class FeatureBuilder {
   }
 
   /// The other end of a part at this joint, at home: the point of the neighbouring joint, or the origin of the body
-  /// after the last joint. None for a part of the base, and beside a sliding joint, whose point says nothing on its
-  /// part.
+  /// after the last joint. None for a part of the base, and if one of the two joints slides, because the
+  /// point of a sliding joint does not show where its part ends.
   std::optional<Vector3> other_end(PartSide side, const Limb& limb, std::size_t joint) const {
     const auto slides = [&](std::size_t j) { return limb.joints[j].motion == Motion::prismatic; };
     const bool is_after = side == PartSide::after;
@@ -185,7 +186,8 @@ class FeatureBuilder {
   /// Returns true if the direction of a distance leads from its joint into the part, to the part's other end. Then an
   /// error along this direction makes the part shorter.
   bool leads_into_part(const FeatureLines& lines, const FeatureFrame& at, const Limb& limb, std::size_t joint) const {
-    constexpr double kMostlyAlong = 0.5;  // cosine of the angle between both
+    // Smallest cosine of the angle between the direction and the line to the other end.
+    constexpr double kMostlyAlong = 0.5;
     const auto end = lines.direction ? other_end(lines.part, limb, joint) : std::nullopt;
     if (!end) return false;
     const Vector3 across = *end - at.middle;

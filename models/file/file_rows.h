@@ -20,7 +20,8 @@ struct Nothing {};
 template <class Object>
 using Row = Key<Object, Nothing>;
 
-/// Makes the KeyValue of a key: it calls `read` with the StudyValue, and stores the result in the member at `path`.
+/// The KeyValue of a key whose value is converted by read(StudyValue) and stored in a member of the object. path:
+/// pointers to members that lead from the object to this member.
 template <class Read, class... Path>
 auto kept(std::string type, Read read, Path... path) {
   using Object = OwnerOf<Path...>;
@@ -29,7 +30,7 @@ auto kept(std::string type, Read read, Path... path) {
                           }};
 }
 
-/// Makes the KeyValue of a key: it calls `read` with the StudyValue and the object.
+/// The KeyValue of a key whose value is read by read(StudyValue, object), which sets members of the object.
 template <class Object>
 KeyValue<Object> read_by(std::string type, void (*read)(const StudyValue&, Object&)) {
   return {.type = std::move(type), .read = read};
@@ -55,7 +56,7 @@ Row<Object> optional(std::string_view name, KeyValue<Object> value, std::string 
   return row;
 }
 
-/// The names of the base's axes.
+/// The names of the base's axes, in files.
 inline constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
 
 Expression expression(const StudyValue& value);  ///< Reads an expression: a text or a bare number.
@@ -65,18 +66,20 @@ Triple direction(const StudyValue& value);       ///< Reads a direction: "x", "-
 Reference reference(const StudyValue& value);                ///< Reads a name.
 std::vector<Reference> references(const StudyValue& value);  ///< Reads a name, or a list of names.
 
-/// Throws if a name is too long or contains a character that names must not have.
+/// Throws InputError if a name is empty, is too long, begins with -, or contains a character that names must not have.
 void check_name(const Reference& reference);
 
-/// Adds the name to `taken`. Throws if check_name() does, or if `taken` already has the name.
+/// Adds the name to `taken`. Throws if check_name() does, or if `taken` already has the name. whose: noun in the
+/// message for what has the name.
 void add_name(const Reference& reference, std::unordered_set<std::string>& taken, std::string_view whose);
 
 std::string read_name(const StudyValue& value);  ///< Reads a text that passes check_name().
 
-/// The keys of a table whose names the file chooses, in the order of the file.
+/// The keys of a table in which the file chooses the names of the keys, in the order of the file. Throws if
+/// check_name() does.
 std::vector<Reference> keys_in_order(const StudySection& section);
 
-/// The tables of a list of tables, `[[...]]`.
+/// The tables in a list of tables `[[...]]`. Throws InputError if the value is a single table.
 std::vector<StudyValue> tables(const StudyValue& value);
 
 /// Reads `copies = { count = 3, about = "z" }`.

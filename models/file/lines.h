@@ -7,7 +7,7 @@
 #include "engine/base/error.h"
 #include "models/file/expression.h"
 
-/// Values that the tables of a mechanism file share, as written.
+/// Types of values, as written, that several tables of a mechanism file contain.
 namespace poesy::file {
 
 /// A name that refers to something else in the file.
@@ -27,13 +27,13 @@ struct Triple {
 /// A point that has a name.
 struct NamedPoint {
   std::string name;  ///< name by which references refer to it
-  Triple point;      ///< coordinates in the base frame at home, or in the platform's frame
+  Triple point;      ///< coordinates in the base frame at home; of a point of the platform, in the platform's frame
 };
 
 /// Copies of a limb or a body, rotated about an axis of the base.
 struct Copies {
   std::size_t count = 1;  ///< number of copies including the first, at least 1
-  std::size_t about = 2;  ///< axis of the base about which copies are rotated: 0, 1, 2
+  std::size_t about = 2;  ///< axis of the base about which copies are rotated: 0, 1, 2 for x, y, z
 
   /// Returns true if both have the same number of copies about the same axis.
   bool operator==(const Copies&) const = default;

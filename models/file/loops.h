@@ -35,7 +35,7 @@ Transform transform_of(const Mechanism& unit, const State& state, std::size_t bo
 /// metric's points by the twist xi.
 lie::Matrix6<double> metric_root(const Mechanism& unit, const PlatformPose& pose);
 
-/// The matrix `rows`, in which the six rows of each limb are multiplied by `root` from the left.
+/// The matrix `rows` with the six rows of each limb multiplied from the left by `root`.
 Eigen::MatrixXd weighed(const lie::Matrix6<double>& root, const Eigen::MatrixXd& rows);
 
 /// The mismatch of the limbs for this residual as a share of the reach, defined like the response `gap`. With the parts

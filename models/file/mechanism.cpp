@@ -21,7 +21,8 @@ struct Element {
   std::size_t position;  ///< index of this elementary joint among those of the joint as written
   Motion motion;
   Vector3 point;
-  Vector3 z = Vector3::Zero();  ///< axis; for S it follows from the preceding joints
+  /// Axis; for a joint S it is set when the frames are made, from the points of other joints.
+  Vector3 z = Vector3::Zero();
 };
 
 Motion motion_of(JointKind kind, std::size_t position) {
@@ -42,7 +43,7 @@ Motion motion_of(JointKind kind, std::size_t position) {
   throw std::logic_error("unknown kind of joint");
 }
 
-/// The name of a drive in the n-th copy of a limb, where n replaces "*".
+/// The name of a drive in the n-th copy of a limb (from 1): n replaces "*".
 std::string of_copy(const std::string& drive, std::size_t n) {
   std::string name;
   for (const char letter : drive) name += letter == '*' ? std::to_string(n) : std::string(1, letter);
@@ -330,7 +331,8 @@ class Builder {
                      "write the lowest value first");
   }
 
-  /// The point of the first moving joint in the range, or of the first joint if none moves.
+  /// The point (m) of the joint nearest to the platform among the joints that move, or among all joints if none moves.
+  /// The range of joints begins at the platform.
   template <class Iterator>
   static Vector3 last_moving(Iterator begin, Iterator end) {
     const auto found = std::find_if(begin, end, [](const Joint& joint) { return joint.moves(); });

@@ -15,7 +15,7 @@
 #include "models/file/mechanism_file.h"
 #include "models/lie/se3.h"
 
-/// A mechanism of a file in numbers: SI, in the base frame, at the home pose.
+/// The mechanism that a file describes, with numbers instead of expressions: SI, in the base frame, at the home pose.
 namespace poesy::file {
 
 /// A point (m) or a direction.
@@ -36,7 +36,7 @@ struct Joint {
   bool actuated;           ///< true if a drive holds the joint
   double pitch;            ///< pitch of a helical joint (m/rad); positive if right-handed
   Transform at_home;       ///< base_T_joint at home
-  std::string drive = {};  ///< name of the drive, if the file gives one; joints of the same name move together
+  std::string drive = {};  ///< name of the drive, if the file gives one; joints with the same drive move together
   bool reaction = false;   ///< true if the reaction of the joint is a response
 
   /// Returns true if the joint has a displacement.
@@ -102,8 +102,8 @@ inline constexpr double kClosed = 1e-12;
 struct Precision {
   double rank_threshold = kRankThreshold;  ///< a singular value below this share of the largest counts as zero
   /// The largest opening (rad, or share of the reach) of a loop that counts as closed. If numbers are rounded, this is
-  /// a bound on the response `gap`; a pose is then the configuration with the least mismatch of the limbs, in the
-  /// metric of the mechanism's points, and this mismatch remains.
+  /// a bound on the response `gap` as a share of the reach; a pose is then the configuration with the least mismatch of
+  /// the limbs, in the metric of the mechanism's points, and this mismatch remains.
   double closed = kClosed;
 
   /// Returns true if loops that stay open by more than kClosed count as closed.
@@ -112,8 +112,9 @@ struct Precision {
 
 /// An error that the file states with limb = "each".
 struct EachLimb {
-  std::string text;  ///< name of the error, and the two parts that its frame connects in each limb
-  bool alike;        ///< true if the elementary joints of these limbs have the same motions in the same order
+  /// Text for messages: name of the error, the limbs, and the two parts that its frame connects in each limb.
+  std::string text;
+  bool alike;  ///< true if the elementary joints of these limbs have the same motions in the same order
 };
 
 /// A mechanism in numbers. It contains everything that a model needs except solvers.
@@ -134,14 +135,15 @@ struct Mechanism {
   std::vector<FactorSet> sets = {};           ///< sets of errors, "all" first
   std::vector<EachLimb> each = {};            ///< errors with limb = "each"
   ErrorsAbout about = ErrorsAbout::joint;     ///< points about which angular errors of frames rotate
-  /// True if the angular errors of a limb's first and last frame rotate about the joint next to the frame, see
-  /// chain::Limb. False if they rotate about the origin of base or platform: always so if there are features.
+  /// True if the solvers rotate angular errors of a limb's first and last frame about the joint next to the frame
+  /// (chain::Limb::errors_at_joints). False if they rotate them about the origin of base or platform. It is false if
+  /// there are features; `terms` then account for the other centre if `about` is ErrorsAbout::joint.
   bool errors_at_joints = true;
   std::vector<Feature> features = {};  ///< features of all limbs
   /// [features] part_T_feature at home: the middle (m) and the axes of each feature in the frame of its part.
   std::vector<Transform> feature_places = {};
-  /// The largest distance (m) between two points of joints, or of a joint and the platform's origin P. Copies of limbs
-  /// do not count.
+  /// The largest distance (m) between two points of joints, or between a joint and the platform's origin P. Copies of
+  /// limbs do not count.
   double reach;
   Precision precision = {};  ///< precision of the numbers
   assembly::Load load = {};  ///< load, used only if there is stiffness
@@ -161,9 +163,9 @@ struct Mechanism {
 /// The default values of the parameters (SI), in the order of the file.
 std::vector<double> default_geometry(const MechanismFile& file);
 
-/// The mechanism for these values of file.geometry (SI). Throws InputError with the place in the file if they give no
-/// mechanism: wrong dimensions, directions without length, parallel axes that must not be parallel, metric points on a
-/// line.
+/// The mechanism for these values of file.geometry (SI). Throws InputError with the place in the file if these values
+/// give no mechanism, for example because an expression has a wrong dimension, a direction has no length, or the two
+/// axes of a universal joint are parallel.
 Mechanism mechanism(const MechanismFile& file, std::span<const double> geometry);
 
 /// The mechanism with lengths in units of its reach. The reach of the result is 1.
@@ -189,7 +191,8 @@ Transform platform_transform(const Mechanism& mechanism, const PlatformPose& pos
 /// bodies (rx, ry, rz) is the rotation vector.
 Transform body_transform(const Mechanism& mechanism, std::size_t body, const PlatformPose& pose);
 
-/// [6 x 6] The twists [omega; v] of the body, at the base's origin, per unit of each component of its pose.
+/// [6 x 6] The twists [omega; v] of the body, at the base's origin, per unit of each component of its pose (one in each
+/// column).
 lie::Matrix6<double> body_columns(const Mechanism& mechanism, std::size_t body, const PlatformPose& pose);
 
 /// The pose of a body at home: its origin, and no rotation.
@@ -202,7 +205,8 @@ std::vector<std::size_t> placing_limbs(const Mechanism& mechanism);
 /// The pose of the platform at home: P, and no rotation.
 PlatformPose home_pose(const Mechanism& mechanism);
 
-/// [6 x 6] The twists [omega; v] of the platform, at the base's origin, per unit of each component of its pose.
+/// [6 x 6] The twists [omega; v] of the platform, at the base's origin, per unit of each component of its pose (one in
+/// each column).
 lie::Matrix6<double> platform_columns(const Mechanism& mechanism, const PlatformPose& pose);
 
 /// The pose base_T_body of the body at the end of the limb. displacements: those of the limb's joints that move (rad,

@@ -40,7 +40,7 @@ void read_at(const StudyValue& value, JointLines& joint) {
   }
 }
 
-/// Reads the name of a drive. In a name, "*" stands for the number of a copy.
+/// Reads the name of a drive. In each copy of the limb, the number of the copy replaces "*" in this name.
 void read_drive(const StudyValue& value, JointLines& joint) {
   if (elements(joint.kind) > 1) {
     value.fail("is a text, but a joint of type " + std::string(name(joint.kind)) + " has two axes",
@@ -151,7 +151,7 @@ std::vector<JointLines> joints(const StudyValue& value) {
   return list;
 }
 
-/// The value of the key `limb` of [[error]] that means all limbs.
+/// The value of the key `limb` in [[error]] with which the error acts in all limbs.
 constexpr std::string_view kEach = "each";
 
 std::string read_limb_name(const StudyValue& value) {
@@ -196,7 +196,7 @@ const Keys<LimbLines, Nothing>& limb_keys() {
   return keys;
 }
 
-/// The numbers of moving axes and frames of all limbs together.
+/// The numbers of limbs, moving axes and frames of a mechanism so far.
 struct Extent {
   std::size_t limbs = 0;
   std::size_t axes = 0;    ///< number of axes that move
@@ -212,7 +212,7 @@ struct Extent {
   }
 };
 
-/// Fails if the limbs up to this one exceed the limits of a mechanism.
+/// Throws InputError if the limbs up to this one exceed the limits of a mechanism.
 void check_extent(const Extent& extent, const StudyValue& limb) {
   const auto check = [&](std::string_view what, std::size_t count, std::size_t most) {
     if (count <= most) return;
@@ -223,7 +223,7 @@ void check_extent(const Extent& extent, const StudyValue& limb) {
   check("frames", extent.frames, kMostFrames);
 }
 
-/// Fails if a point of the limb has the name of one of its joints.
+/// Throws InputError if a point of the limb has the name of one of the limb's joints.
 void check_names_of_points(const LimbLines& limb) {
   std::unordered_set<std::string> names;
   for (const JointLines& joint : limb.joints) names.insert(joint.name);
@@ -297,7 +297,7 @@ void read_workspace(const StudyValue& value, PlatformLines& platform) {
   }
 }
 
-/// Names that points of the platform must not have, because they are in use.
+/// Names that points of the platform must not have, because other points or bodies have them.
 constexpr std::array<std::string_view, 4> kOtherPoints{"base", "origin", "platform", "tip"};
 
 std::vector<NamedPoint> platform_points(const StudyValue& value) {
@@ -597,7 +597,8 @@ void read_slot(const StudySection& section, const std::vector<NamedLimb>& known,
              "the last frame of " + known[without.front()].text(without.front()) + " is " + last);
 }
 
-/// Throws unless the table has exactly one of two keys.
+/// Throws InputError unless the table has exactly one of the keys `one` and `other`, and no key `scale` together with
+/// `other`.
 void need_one_of(const StudySection& section, std::string_view one, std::string_view other) {
   if (section.find(one)) {
     section.refuse(other, "an error with " + std::string(one));

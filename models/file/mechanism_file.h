@@ -58,7 +58,7 @@ struct LimbLines {
   std::optional<Reference> from;              ///< body at which the limb begins; default: the base
   std::optional<Reference> to;                ///< body at which the limb ends; default: the platform
   std::vector<JointLines> joints;             ///< joints, in order from the first body to the last
-  std::vector<NamedPoint> points;             ///< named points that only this limb knows
+  std::vector<NamedPoint> points;             ///< named points to which only this limb may refer
   Copies copies;                              ///< number of copies
   std::vector<LinkLines> links;               ///< links with compliance
   std::vector<FeatureLines> features;         ///< features of the limb's parts, with tolerances
@@ -76,15 +76,15 @@ struct CoordinateLines {
   Expression upper;       ///< upper limit of the workspace
 };
 
-/// The meaning of rx, ry, rz, which rotate the platform from its home orientation: a rotation vector, or the order of
-/// the product of three rotations.
+/// The meaning of rx, ry, rz, which rotate the platform from its home orientation: the components of a rotation vector,
+/// or the angles of three rotations about the base's axes. The letters then state the order of their product.
 enum class Rotation { vector, xyz, xzy, yxz, yzx, zxy, zyx };
 /// The name in files: "vector", or the order of the product, such as "xyz".
 std::string_view name(Rotation rotation);
 
 /// The platform as written.
 struct PlatformLines {
-  std::optional<Triple> origin;              ///< P at home
+  std::optional<Triple> origin;              ///< origin P at home
   std::optional<Triple> x;                   ///< x axis at home; default: the base's x axis
   std::optional<Triple> z;                   ///< z axis at home; given if and only if `x` is given
   Rotation rotation = Rotation::vector;      ///< meaning of rx, ry, rz
@@ -94,7 +94,7 @@ struct PlatformLines {
   std::vector<NamedPoint> named;             ///< points whose displacements are reported, in the platform's frame
   /// Points of the metric, in the platform's frame; default: derived from the ends of the limbs.
   std::vector<Triple> points;
-  Place place;                     ///< place of [platform] or of its points
+  Place place;                     ///< place of [platform], or of the metric's points if they are given
   std::optional<Expression> mass;  ///< mass; default: 0
   std::optional<Triple> centre;    ///< centre of mass, in the platform's frame; default: its origin
 };
@@ -112,7 +112,7 @@ std::string_view name(ErrorsAbout about);
 /// state them.
 struct SlotLines {
   std::vector<std::size_t> limbs;  ///< indices of the limbs, counted from 0
-  bool each = false;               ///< true if the limbs are written as "each"
+  bool each = false;               ///< true if the file states limb = "each"
   /// [limbs] Suffix of the error's name: the number of the limb or of its copy; 0 if there is none.
   std::vector<std::size_t> numbers;
   std::vector<std::size_t> frames;  ///< [limbs] index of the frame in each limb, counted from 0
@@ -143,8 +143,8 @@ struct ErrorLines {
   std::vector<PlaceLines> places;            ///< the places, if the error acts in several places at once
   /// Joint of the limb to whose displacement the effect of the error is proportional; none if the effect is constant.
   std::optional<Reference> grows_with;
-  std::optional<Expression> from;  ///< displacement from home at which the error is zero; default: 0
-  std::string description;         ///< description; empty: the description of the frame
+  std::optional<Expression> from;  ///< displacement of this joint from home at which the error is zero; default: 0
+  std::string description;         ///< description; empty: a text about limb, frame and components is used
 };
 
 /// A factor set as written.
@@ -160,7 +160,7 @@ struct MechanismFile {
   std::string title;  ///< title for people
   /// Parameters of the geometry, in the order of the file, with defaults.
   std::vector<GeometryParameter> geometry;
-  std::vector<NamedPoint> points;                ///< named points that all limbs know
+  std::vector<NamedPoint> points;                ///< named points to which all limbs may refer
   PlatformLines platform;                        ///< the platform
   std::vector<BodyLines> bodies;                 ///< bodies other than base and platform, each once as written; copies
                                                  ///< (BodyLines::copies) are not listed
@@ -174,10 +174,10 @@ struct MechanismFile {
   std::vector<SetLines> sets;                    ///< sets of errors other than "all"
   GeneralLines general;                          ///< general tolerances of the drawing
 
-  /// Returns true if any limb has features.
+  /// Returns true if any limb has features or clearances.
   bool has_features() const;
-  /// Returns true if every component of every fixed frame is an error. That is so if the file says it, or if the file
-  /// names no error at all.
+  /// Returns true if every component of every fixed frame is an error: if the file says so, or if it states neither
+  /// errors nor features nor clearances.
   bool all_frames() const { return all || (!frames && errors.empty() && !has_features()); }
 };
 
@@ -189,8 +189,8 @@ const StudyTables& mechanism_file_tables();
 std::vector<OwnResponse> read_own_responses(const std::string& text, const std::string& path,
                                             const ModelDescription& model);
 
-/// Reads a mechanism file of format version 1. path: for messages. Throws InputError "FILE:LINE:COL: ..." for any
-/// mistake in the text or with the default geometry. So mechanism() accepts every file that is returned, with its
+/// Reads a mechanism file of format version 1. path: for messages. Throws InputError "FILE:LINE:COL: ..." for a mistake
+/// in the text, or if mechanism() refuses the default geometry. So mechanism() accepts every returned file with its
 /// default geometry.
 MechanismFile read_mechanism_file(const std::string& text, const std::string& path);
 

@@ -12,7 +12,7 @@ namespace poesy::file {
 void check_metric(const MechanismFile& file, const Mechanism& made) {
   const std::string why = chain::why_no_metric(made.points, made.reach);
   if (why.empty()) return;
-  // A power of ten in metres that is of the size of the mechanism.
+  // A power of ten (m) of the order of magnitude of the mechanism's reach.
   const double size = std::pow(10.0, std::floor(std::log10(0.5 * made.reach)));
   const std::string length = "\"" + readable_text({size, Dimension::length}) + "\"";
   throw InputError(file.platform.place, "the metric has no meaning: " + why,

@@ -5,8 +5,8 @@
 
 namespace poesy::file {
 
-/// Throws InputError if the platform's points define no metric. The message has points to copy, of the size of the
-/// mechanism.
+/// Throws InputError if the platform's points define no metric. The message proposes points whose coordinates have the
+/// order of magnitude of the mechanism's reach.
 void check_metric(const MechanismFile& file, const Mechanism& made);
 
 }  // namespace poesy::file

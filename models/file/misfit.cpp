@@ -26,9 +26,9 @@ constexpr double kMillimetres = 1e3;
 /// A joint whose point or axis may be wrong, in a limb and its copies.
 struct Suspect {
   std::vector<std::size_t> limbs;
-  std::size_t first;  ///< index of its first elementary joint
-  std::size_t count;  ///< number of its elementary joints
-  bool point;         ///< true: its point is suspected; false: its axis
+  std::size_t first;  ///< index in the limb of the suspect's first elementary joint
+  std::size_t count;  ///< number of the suspect's elementary joints
+  bool point;         ///< true: the joint's point is suspected; false: its axis
 };
 
 /// The loop equations at one pose, projected onto the mismatch that no motion of the joints can remove. The metric
@@ -98,8 +98,8 @@ std::vector<Suspect> suspects_of(const Mechanism& unit) {
   return list;
 }
 
-/// For each elementary joint of the suspect, the effects [6 x 6] of a small twist of its axis at home on the residual
-/// of its limb, if the limb's other axes stay.
+/// For each elementary joint of the suspect, the matrix [6 x 6] from a small twist of its axis at home to the change of
+/// the limb's residual, if the limb's other axes stay where they are. position: index of the limb.
 std::vector<lie::Matrix6<double>> effects_of_axes(const Mechanism& unit, const State& state, const Suspect& suspect,
                                                   std::size_t position) {
   std::size_t k = 0;
@@ -197,8 +197,9 @@ InputError misfit(const Mechanism& mechanism, std::span<const PoseMobility> pose
     Correction correction = correction_of(unit, equations, suspect);
     if (!best || correction.is_left.norm() < best->is_left.norm()) best = std::move(correction);
   }
-  // The response `gap` is a mean over pairs of limbs, but the remaining mismatch is a sum over limbs i: the sum of |r_k
-  // - r_i|^2 over pairs is (number of limbs) x (sum of |r_i|^2).
+  // The response `gap` is a root mean square over pairs of limbs, but the remaining mismatch is the root of a sum over
+  // limbs i. The residuals r_i of the limbs add up to 0, so the sum of |r_k - r_i|^2 over pairs is (number of limbs) x
+  // (sum of |r_i|^2).
   const double is_left =
       mechanism.reach * best->is_left.maxCoeff() * std::sqrt(2.0 / static_cast<double>(unit.loops()));
   const std::size_t first = best->suspect.limbs.front();

@@ -22,8 +22,8 @@ struct Decomposed {
   Matrix V;     ///< [columns x columns] right singular vectors
 };
 
-/// Decomposes a matrix. A singular value counts as zero below the share `threshold` of the largest singular value, or
-/// of `largest` if that is not 0.
+/// Decomposes a matrix. A singular value counts as zero if it is at most `threshold` times the largest singular value,
+/// or times `largest` if this argument is not 0.
 Decomposed decomposed(const Matrix& matrix, double threshold, double largest = 0.0) {
   if (matrix.cols() == 0 || matrix.rows() == 0) {
     const Matrix identity = Matrix::Identity(matrix.cols(), matrix.cols());
@@ -93,7 +93,8 @@ Jacobians jacobians(const Mechanism& unit, std::span<const double> q) {
   return made;
 }
 
-/// Replaces the columns of all joints of a drive by one column, their sum. It is the column of the drive's first joint.
+/// Replaces the columns of all joints of a drive by one column, their sum. The sum takes the place of the column of the
+/// drive's first joint.
 Jacobians with_one_column_a_drive(Jacobians all, const std::vector<Drive>& drives) {
   std::vector<Index> kept;
   std::vector<bool> follows(all.joints.size(), false);
@@ -199,9 +200,9 @@ void find_coordinates(const Mechanism& unit, const PlatformPose& pose, const Mat
   if (found.coordinates_rank < unit.coordinates.size()) found.dependent = dependent_of(unit, chosen, rank);
 }
 
-/// The value with which decomposed() compares the singular values of the loops. If a drive moves several joints, whose
-/// motions may cancel, it is the largest singular value of the matrix with a column for each joint. Otherwise it is 0,
-/// which stands for the largest of the singular values themselves.
+/// The argument `largest` of decomposed() for the loop Jacobian. If a drive moves several joints, their columns may
+/// cancel in the sum; so the result is the largest singular value of the matrix with a column for each joint. Otherwise
+/// the result is 0: decomposed() then takes the largest singular value of its own matrix.
 double largest_of(const Matrix& loops_by_joint, const std::vector<Drive>& drives) {
   if (std::ranges::none_of(drives, &Drive::is_shared)) return 0.0;
   return linalg::singular_values(loops_by_joint)[0];

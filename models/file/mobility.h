@@ -11,10 +11,11 @@
 namespace poesy::file {
 
 /// The mobility of a mechanism in one configuration, from the singular values of its loop Jacobian. Of the limbs that
-/// end at the same body, the first places the body. Each further limb gives 6 rows: the twist of its end minus that of
-/// the first limb, [omega; v] at the base's origin. That makes 6 (limbs - bodies) rows, where bodies do not include the
-/// base. Each joint that moves has a column, and all joints of one drive have a column together. Lengths are in units
-/// of the reach. A singular value below the threshold of the mechanism's Precision counts as zero.
+/// end at the same body, one places the body (placing_limbs()). Each further limb gives 6 rows: the twist of its end
+/// minus that of the placing limb's end, [omega; v] at the base's origin. That makes 6 (limbs - bodies) rows, where
+/// bodies do not include the base. Each joint that moves has a column, and all joints of one drive have a column
+/// together. Lengths are in units of the reach. A singular value below the threshold of the mechanism's Precision
+/// counts as zero.
 struct Mobility {
   std::size_t joints = 0;             ///< number of joints that move
   std::size_t actuated = 0;           ///< number of joints with a drive
@@ -29,8 +30,10 @@ struct Mobility {
   /// Rank of the passive joints' columns; if it is below loop_equations, limbs deform each other.
   std::size_t passive_rank = 0;
   std::size_t left_when_locked = 0;  ///< number of freedoms of the passive joints while all drives are held
-  std::size_t loose = 0;             ///< number of those freedoms that move the body loose_body; 0 if none moves a body
-  std::string loose_body = {};       ///< first body that moves: "the platform", "body 'carriage_1'"
+  /// Number of the freedoms left_when_locked that move the body loose_body; 0 if none moves a body.
+  std::size_t loose = 0;
+  /// First body that moves while all drives are held: "the platform", "body 'carriage_1'".
+  std::string loose_body = {};
   /// The motion of loose_body in words: "joint 'A' of limb 2 is loose, and the platform turns about (0, 0, 1)"; empty
   /// if no body moves.
   std::string loose_text = {};
@@ -55,7 +58,7 @@ Mobility home_mobility(const Mechanism& mechanism);
 /// The mobility at a pose of the workspace.
 struct PoseMobility {
   std::vector<double> pose;  ///< [coordinates] pose, SI
-  Tracked tracked;           ///< path from home to the pose
+  Tracked tracked;           ///< result of tracking the path from home to the pose
   Mobility mobility = {};    ///< valid if the pose is reached
   double turned = 0.0;       ///< angle of the parasitic rotation (rad); 0 if the pose is not reached
   double moved = 0.0;        ///< length of the parasitic displacement of P (m); 0 if the pose is not reached
@@ -67,13 +70,14 @@ struct PoseMobility {
 /// The mobility at `count` poses that fill the workspace evenly (Roberts' sequence), each reached from home.
 std::vector<PoseMobility> workspace_mobility(const Mechanism& mechanism, std::size_t count = 20);
 
-/// Throws InputError if the drives do not hold the platform, if they hold every joint, or if the coordinates are
-/// dependent or not as many as the platform's freedoms. The message names the joint, freedom or coordinate at fault.
-/// More drives than freedoms are over-constraints, not mistakes.
+/// Throws InputError if the platform cannot move, if the drives do not hold the platform and all other bodies, if they
+/// hold every joint, or if the coordinates are dependent or not as many as the platform's freedoms. The message names
+/// the joint, freedom or coordinate at fault. More drives than freedoms are over-constraints, not mistakes.
 void check_mobility(const Mechanism& mechanism, const Mobility& home);
 
-/// Throws InputError if home is a singular configuration: if no pose of the workspace is reached, the poses have
-/// another number of freedoms, or the drives hold the platform only at home.
+/// Throws InputError if none of these poses is reached from home, if the mechanism has another number of freedoms at
+/// one of them than at home, so that home is singular, or if the drives do not hold all bodies at one of them. poses:
+/// from workspace_mobility().
 void check_mobility(const Mechanism& mechanism, const Mobility& home, std::span<const PoseMobility> poses);
 
 }  // namespace poesy::file

@@ -15,7 +15,7 @@
 namespace poesy::file {
 namespace {
 
-/// The mechanism for these values of the geometry. Faults of loops and drives come before faults of the metric.
+/// The mechanism for these values of the geometry. Faults of loops and drives are reported before faults of the metric.
 Checked checked_mechanism(const MechanismFile& file, std::span<const double> geometry, Workspace workspace) {
   Checked found = checked(mechanism(file, geometry), workspace);
   check_metric(file, found.mechanism);
@@ -38,7 +38,7 @@ struct Read {
 /// metric, or mismatch as published (1 rad weighs as much as 1 m).
 enum class By { stiffness, platform, published };
 
-/// Throws if a named point of the platform gives a response the name of another one.
+/// Throws if a response of a named point of the platform would have the name of another response.
 void check_points(const MechanismFile& file, const ModelDescription& model) {
   for (const NamedPoint& named : file.platform.named) {
     for (const std::string_view end : {"_x", "_y", "_z", "_position"}) {
@@ -123,8 +123,8 @@ std::string key_reference() {
 
 namespace {
 
-/// The responses that the file itself defines (`own`, for the model `from`), for the model `to` with another metric.
-/// Responses that this model cannot form are left out.
+/// Converts the responses that the file itself defines (`own`) from the model `from`, to whose responses they refer by
+/// index, to the model `to` with another metric. Responses that `to` cannot form are left out.
 std::vector<OwnResponse> by_names(const std::vector<OwnResponse>& own, const ModelDescription& from,
                                   const ModelDescription& to) {
   const ModelDescription named = described(from, own);
@@ -178,7 +178,7 @@ CatalogEntry entry_of(MechanismFile file, const std::string& path, const std::st
   return with_own(*other, own, other->description);
 }
 
-/// Adds to the catalog entry the function that changes loads, for all its metrics.
+/// Adds the function that changes loads (CatalogEntry::with_load) to the catalog entry. The new entry has all metrics.
 CatalogEntry with_loads(CatalogEntry entry, const MechanismFile& file, const std::string& path,
                         const std::string& text) {
   entry.with_load = [file, path, text](const StudyValue& value) {

@@ -33,7 +33,7 @@ class Numbers {
   Vector3 vector(const Triple& triple, const Physical& wanted) const;  ///< A vector with entries of this quantity.
   /// A direction as a unit vector. Throws if its entries have different dimensions or are all zero.
   Vector3 direction(const Triple& triple) const;
-  /// The rotation of a frame with this z axis. The x axis is made perpendicular to z.
+  /// The rotation matrix of a frame with this axis z. Its axis x is the given direction x, made perpendicular to z.
   lie::Matrix3<double> axes(const Triple& x, const Triple& z) const;
 
   bool same(const Vector3& a, const Vector3& b) const;  ///< Returns true if two points are equal up to rounding.
@@ -44,12 +44,12 @@ class Numbers {
   double reach_ = 1.0;
 };
 
-/// Directions count as parallel if the angle between them is below this (rad).
+/// Two lines count as parallel if the angle between them is at most this (rad).
 inline constexpr double kParallel = 1e-6;
 
-bool parallel(const Vector3& a, const Vector3& b);  ///< Returns true if two unit vectors are parallel.
+bool parallel(const Vector3& a, const Vector3& b);  ///< Returns true if two unit vectors are parallel or opposite.
 
-/// The rotation of a frame with the perpendicular unit vectors x and z as axes.
+/// The rotation matrix of a frame whose axes x and z are these perpendicular unit vectors.
 lie::Matrix3<double> frame_of(const Vector3& x, const Vector3& z);
 
 /// The part of a direction that is perpendicular to z, scaled to unit length.

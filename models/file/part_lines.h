@@ -62,7 +62,7 @@ struct LinkLines {
   /// Shear correction factor of the area. Without it, shear deformation is neglected.
   std::optional<Expression> shear;
   std::optional<Triple> y;                    ///< y axis at home
-  std::optional<ComplianceLines> compliance;  ///< compliance matrix in place of a section
+  std::optional<ComplianceLines> compliance;  ///< compliance matrix, given instead of a section
 };
 
 /// The loads of a file, as written.

@@ -29,7 +29,7 @@ struct Powers {
 /// A kind of quantity with its usual name.
 struct Physical {
   std::string_view name;     ///< name with its article: "a stiffness"
-  Powers powers;             ///< its dimension
+  Powers powers;             ///< dimension
   std::string_view unit;     ///< unit that names the quantity in messages, "N/m"; empty if the name is enough
   std::string_view example;  ///< an example: "20 N/um"; empty for a number
 };
@@ -60,7 +60,7 @@ inline constexpr Physical kRotationalStiffness{
 /// Unit Pa.
 inline constexpr Physical kModulus{"a modulus", {.length = -1, .mass = 1, .time = -2}, "Pa", "210 GPa"};
 
-/// The quantity for a dimension of the engine.
+/// The quantity that has this dimension of the engine.
 const Physical& physical(Dimension dimension);
 
 /// A dimension as text: "a length", "an angle", "a number", "length^2 angle^-1". If mass or time is among the powers,
@@ -70,7 +70,7 @@ std::string dimension_text(const Powers& powers);
 /// A unit that was found at the beginning of a text.
 struct WrittenUnit {
   double si;           ///< value of the unit in SI
-  Powers powers;       ///< its dimension
+  Powers powers;       ///< dimension
   std::size_t length;  ///< number of bytes of the unit's name in the text
 };
 

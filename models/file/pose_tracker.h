@@ -11,8 +11,9 @@
 
 namespace poesy::file {
 
-/// Tracks poses, and remembers the last ones: reachability, solves and pictures of one pose need the same path, one
-/// after the other. A result depends only on the mechanism and the pose. Several threads may call track() at once.
+/// Tracks poses, and remembers the results for the last poses, because the check whether a pose is reachable, its
+/// solves and its picture all need the same result. A result depends only on the mechanism and the pose. Several
+/// threads may call track() at once.
 class PoseTracker {
  public:
   /// Copies the mechanism.
@@ -22,13 +23,14 @@ class PoseTracker {
   Tracked track(std::span<const double> pose) const;
 
  private:
-  static constexpr std::size_t kMostRemembered = 16;  // poses; a few for each of several threads
+  // Largest number of remembered poses: a few for each of several threads.
+  static constexpr std::size_t kMostRemembered = 16;
 
   using Remembered = std::pair<std::vector<double>, Tracked>;  // a pose and its result
 
   Tracker tracker_;
   mutable std::mutex mutex_;
-  mutable std::deque<Remembered> last_;  // latest first
+  mutable std::deque<Remembered> last_;  // results for the last poses, the latest first
 };
 
 }  // namespace poesy::file

@@ -27,8 +27,9 @@ Matrix null_space(const Matrix& matrix, double threshold) {
   return svd.V.rightCols(matrix.cols() - rank);
 }
 
-/// A basis of the wrenches of all limbs that balance at every body and strain no limb: null vectors of the equations
-/// that are not motions. Each column has a row for each lambda of the equations (Equilibrium).
+/// A basis of the sets of limb wrenches that balance at every body and strain no limb. Such sets are null vectors of
+/// the equations of the assembly, but not motions. Each column has a row for each lambda of the equations
+/// (Equilibrium).
 Matrix unstrained(const assembly::Equilibrium& equations, double rank_threshold) {
   const Matrix& matrix = equations.matrix();
   const Index wrenches = equations.first_wrenches().back();
@@ -47,7 +48,7 @@ Matrix unstrained(const assembly::Equilibrium& equations, double rank_threshold)
   return balanced * svd.V.rightCols(balanced.cols() - strained);
 }
 
-/// The first limb that these wrenches load, and all limbs whose loads in these wrenches depend on its load.
+/// The first limb that these wrenches load, and all limbs that these wrenches load together with it (kNothing).
 std::vector<std::size_t> loaded_together(const Matrix& wrenches, const assembly::Equilibrium& equations) {
   const std::span<const Index> first = equations.first_wrenches();
   const auto rows = [&](std::size_t e) { return wrenches.middleRows(first[e], first[e + 1] - first[e]); };

@@ -19,7 +19,7 @@ constexpr std::size_t kMostGaps = 4;
 /// factor is tried if the mechanism does not pass with the first one.
 constexpr std::array kMargins{5.0, 1.5};
 
-/// The error that a check throws; none if the check passes.
+/// Calls check(), and returns the error that it throws; none if it throws no error.
 template <class Check>
 std::optional<InputError> problem_of(Check check) {
   try {
@@ -71,11 +71,10 @@ double largest_mismatch(const std::vector<PoseMobility>& poses) {
   return largest;
 }
 
-/// The result of treating numbers as rounded. Both members are empty if the mechanism does not move as its coordinates
-/// say.
+/// The result of treating numbers as rounded. Both members are empty if the mechanism does not pass check_mobility().
 struct Attempt {
   std::optional<Checked> checked = {};
-  std::optional<InputError> misfit = {};  ///< set if the loops close only approximately
+  std::optional<InputError> misfit = {};  ///< set if the loops close to kNamedGap of the reach, but not to kRoundedGap
 };
 
 /// Treats the numbers as rounded. Singular values below the gap count as zero.

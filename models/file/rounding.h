@@ -14,7 +14,8 @@ inline constexpr double kRoundedGap = 1e-4;
 /// names the joint whose corrected numbers would close the loops.
 inline constexpr double kNamedGap = 1e-2;
 
-/// A mechanism that passed its check: it moves as its coordinates say.
+/// A mechanism that passed the check of checked(): its drives hold it, and its coordinates are independent and as many
+/// as the freedoms of its platform.
 struct Checked {
   Mechanism mechanism;  ///< the mechanism, with the precision of its numbers
   Mobility home;        ///< mobility at home, with this precision
@@ -22,17 +23,17 @@ struct Checked {
   double mismatch = 0.0;
 };
 
-/// in_reach: the check requires that some pose of the workspace is reached. as_it_is: it does not.
+/// Whether checked() requires that some pose of the workspace is reached (in_reach) or not (as_it_is).
 enum class Workspace { as_it_is, in_reach };
 
-/// Checks a mechanism. The numbers count as exact if it passes check_mobility(), and if no path to the poses of
-/// workspace_mobility() ends because loops stay open. Otherwise the check is repeated with a lower precision; if the
-/// mechanism passes then, its numbers count as rounded. The rank of such a mechanism is taken at a gap between singular
-/// values that are between 1e-6 and 1e-2 of the largest: at the widest gap with which the mechanism moves as its
-/// coordinates say. Its loops must close to kRoundedGap of the reach. If the mechanism does not pass as rounded either,
-/// the function throws the error of check_mobility(); but if the loops close to kNamedGap, the InputError names the
-/// joint whose numbers would close them. If check_mobility() found no error, the numbers count as exact although some
-/// loops stay open.
+/// Checks a mechanism. The numbers count as exact if the mechanism passes check_mobility(), and if no path to the poses
+/// of workspace_mobility() ends because loops stay open. Otherwise the check is repeated with a lower precision; if the
+/// mechanism passes then, its numbers count as rounded. The rank of such a mechanism is taken at a gap between two
+/// consecutive singular values, of which the larger one is above 1e-6 and the smaller one at most 1e-2 of the largest
+/// singular value: at the widest gap with which the mechanism passes check_mobility(). Its loops must close to
+/// kRoundedGap of the reach. If the mechanism does not pass as rounded either, the function throws the error of
+/// check_mobility(); but if the loops close to kNamedGap, the InputError names the joint whose numbers would close
+/// them. If check_mobility() found no error, the numbers count as exact although some loops stay open.
 Checked checked(Mechanism mechanism, Workspace workspace);
 
 }  // namespace poesy::file

@@ -18,7 +18,7 @@ class Stiffness {
  public:
   explicit Stiffness(const Numbers& numbers) : numbers_(numbers) {}
 
-  /// Sets bearings, links and compliance of the whole limb.
+  /// Sets the bearings, the links and the compliance of the whole limb.
   void add(const LimbLines& lines, const Transform& turn, const std::vector<assembly::Body>& bodies, Limb& limb) const {
     std::size_t first = 0;
     for (const JointLines& joint : lines.joints) {
@@ -52,7 +52,8 @@ class Stiffness {
   static constexpr std::size_t kAboutZ = 2;
   static constexpr std::size_t kAlongZ = 5;
 
-  /// The value of `actuated` with which a drive holds this freedom; empty if the file format has none.
+  /// The value of the key `actuated` with which a drive holds the freedom in this direction; empty if the file format
+  /// has no such value. direction: as for is_free().
   static std::string drive_along(const JointLines& joint, std::size_t direction) {
     if (joint.kind == JointKind::spherical || direction < kAboutZ) return {};
     if (joint.kind == JointKind::universal) return "1";
@@ -83,7 +84,8 @@ class Stiffness {
     throw std::logic_error("unknown kind of joint");
   }
 
-  static constexpr double kSymmetric = 1e-9;  ///< largest asymmetry, as a share of the largest entry of a block
+  /// Largest asymmetry, as a share of the largest entry of the same [3 x 3] block.
+  static constexpr double kSymmetric = 1e-9;
 
   /// The first two numbers of the matrix that differ but should be equal, as text; empty if the matrix is symmetric.
   static std::string asymmetry(const assembly::Matrix6& C) {

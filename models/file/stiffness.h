@@ -7,9 +7,10 @@
 /// Stiffness and loads of a mechanism file.
 namespace poesy::file {
 
-/// Sets the compliances of a limb whose joints are known: bearings, links and the whole limb. turn: the motion from the
-/// first copy of the limb to this one. Throws InputError if an entry is not positive, if a link passes a joint whose
-/// axis is not on the link's line, or if a compliance is not symmetric or has a negative eigenvalue.
+/// Sets the compliances of the bearings, of the links and of the whole limb. The joints of the limb must be set
+/// already. turn: the motion from the first copy of the limb to this one. Throws InputError if a stiffness, a modulus
+/// or a dimension of a section is out of range, if a link passes a joint whose axis is not on the link's line, or if a
+/// compliance is not symmetric or has a negative eigenvalue.
 void add_stiffness(const Numbers& numbers, const LimbLines& lines, const Transform& turn,
                    const std::vector<assembly::Body>& bodies, Limb& limb);
 

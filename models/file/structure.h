@@ -10,8 +10,8 @@
 /// Texts that show how the program understood a mechanism file.
 namespace poesy::file {
 
-/// Text with a line for each elementary joint and fixed frame, with its frame at home (mm, in the base frame). The
-/// named drives and the rule that chose the frames follow.
+/// Text with a line for each elementary joint and fixed frame, with its frame at home (mm, in the base frame). Lines
+/// about named points, bodies, limbs and drives follow, and the rules by which frames are chosen and errors act.
 std::string structure_text(const Mechanism& mechanism);
 
 /// The joints of a drive as text: "joint q of limb 1 and joint q of limb 4".
@@ -30,14 +30,16 @@ std::string coordinate_text(const Coordinate& coordinate);
 /// states it; for example, a universal joint is one joint, although it consists of two elementary joints.
 Sketch sketch_of(const Mechanism& mechanism);
 
-/// Clauses about coordinates whose value at home is outside their workspace, one for each.
+/// Clauses about coordinates whose value at home is outside the workspace, one clause for each.
 std::vector<std::string> home_outside(const Mechanism& mechanism);
 
 /// A clause about a universal joint whose axis on the leg's side lies nearly along the line to the leg's next point, at
-/// home: such a joint lets the leg swing about one axis only. At most one, for copies of a limb share it.
+/// home: such a joint lets the leg swing about one axis only. At most one clause, because the
+/// copies of a limb share it.
 std::vector<std::string> axes_along_legs(const Mechanism& mechanism);
 
-/// Clauses about errors with limb = "each" for which the limbs are not alike, one for each error.
+/// Clauses about errors with limb = "each" whose limbs do not all have the same joint motions in the same order, one
+/// clause for each such error.
 std::vector<std::string> unlike_limbs(const Mechanism& mechanism);
 
 /// A remark on the mismatch of perfect limbs with rounded numbers; empty if numbers are exact. mismatch: its largest

@@ -17,7 +17,7 @@ namespace {
 /// to one part, whose errors may be as large as the distance of the joints.
 constexpr double kShortestLink = 0.02;
 
-/// The indices of the responses with these names, without names that no response has.
+/// The indices of the responses with these names. Names that no response has are ignored.
 std::vector<std::size_t> positions(const std::vector<Response>& responses, std::span<const std::string_view> names) {
   std::vector<std::size_t> list;
   for (const std::string_view name : names) {

@@ -156,8 +156,8 @@ namespace {
 /// Moves joints of a limb such that the sum of squares of their displacements q is least while the limb's end stays at
 /// its pose g. This is Newton's method on min |q|^2 / 2 with fixed g(q). To second order the constraint log(g(q) g^-1)
 /// is sum xi_j dq_j + sum_{i<j} [xi_i, xi_j] dq_i dq_j / 2, with the twists xi_j of the joints. free: indices of the
-/// joints that may move. rank: rank of the columns of these joints. end: pose of the limb's end in the body at which
-/// the limb begins.
+/// joints that may move. rank: rank of the columns of these joints. end: pose of the limb's end in the frame of the
+/// body at which the limb begins. Returns false if the method does not converge.
 bool settle_limb(const Limb& limb, const std::vector<std::size_t>& free, Index rank, const Transform& end,
                  Eigen::Ref<Vector> q) {
   const Index joints = index(free.size());
@@ -209,7 +209,7 @@ bool Tracker::settle(State& state) const {
 }
 
 std::string Tracker::why(const State& state, Ending ending, double share) const {
-  // The number of unknown joint displacements. Unknown components of the bodies' poses follow them.
+  // The number of unknown joint displacements. In free_ they precede the unknown components of the bodies' poses.
   const auto joints = std::ranges::count_if(free_, [&](std::size_t place) { return place < unit_.moving(); });
   const std::string where =
       "the way there from home ends after " + readable_text({100.0 * share, Dimension::number}, 3) + " %: ";

@@ -9,7 +9,7 @@
 
 namespace poesy::file {
 
-/// These displacements of all joints that move, in which those of prismatic joints are multiplied by `factor`.
+/// The given displacements of all joints that move, with those of prismatic joints multiplied by `factor`.
 std::vector<double> scaled_displacements(const Mechanism& mechanism, std::span<const double> displacements,
                                          double factor);
 
@@ -33,12 +33,12 @@ enum class Given { coordinates, drives };
 
 /// Computes nominal joint displacements at a pose. From home, the tracker changes the given numbers (Given) in
 /// proportion, step by step, to their values at the pose. After each step Newton's method solves for all other joint
-/// displacements and body poses. The tracker halves a step until Newton's method converges at once, so that the limbs
-/// stay in the working mode that they have at home. Each Newton step is the least-squares solution with the least norm,
-/// so redundant loop equations do no harm. The joints of one drive are one unknown. If several displacements give the
-/// pose, the tracker chooses among those nearby the ones with the least sum of squares (rad, and lengths in units of
-/// the reach), so that idle freedoms do not depend on the path. With rounded numbers (Precision) a pose is the
-/// least-squares one in the metric. A result depends only on the mechanism and the pose.
+/// displacements and body poses. The tracker halves a step until Newton's method converges without a long or slow step,
+/// so that the limbs stay in the working mode that they have at home. Each Newton step is the least-squares solution
+/// with the least norm, so redundant loop equations do no harm. The joints of one drive are one unknown. If several
+/// displacements give the pose, the tracker chooses among those nearby the ones with the least sum of squares (rad, and
+/// lengths in units of the reach), so that idle freedoms do not depend on the path. With rounded numbers (Precision) a
+/// pose is the least-squares one in the metric. A result depends only on the mechanism and the pose.
 class Tracker {
  public:
   /// Copies the mechanism. Precondition for Given::drives: if all drives are held, the platform has no freedom.

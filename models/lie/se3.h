@@ -87,7 +87,7 @@ Transform<T> rotation(Axis axis, T angle) {
   return {exp(w), Vector3<T>::Zero()};
 }
 
-/// Translation by a distance along a coordinate axis.
+/// Translation by a distance (m) along a coordinate axis.
 template <class T>
 Transform<T> translation(Axis axis, T distance) {
   Transform<T> g;

@@ -19,11 +19,11 @@ struct NumberMask {
   /// @}
 };
 
-/// A double with the interface of a SIMD batch. It is the reference for all batches and the portable fallback.
+/// A double with the interface of a SIMD batch. Tests compare all batches with it, and it is the portable fallback.
 struct Number {
   /// The type of the result of a comparison.
   using MaskType = NumberMask;
-  static constexpr std::size_t kLanes = 1;  ///< the number of lanes is one
+  static constexpr std::size_t kLanes = 1;  ///< number of lanes
 
   double v;  ///< the number
 

@@ -129,9 +129,9 @@ struct RotationLog {
   T bend;  ///< (1 - theta/2 cot(theta/2)) / theta^2: left_jacobian(w)^-1 = I - hat(w) / 2 + bend hat(w)^2
 };
 
-/// The logarithm of rotations by less than 180 deg. The angle theta is computed from tan(theta/2) = s / (1 + c), with s
-/// = sin(theta) and c = cos(theta), which is exact at the small angles of residuals. Beyond 37 deg it is computed from
-/// tan(theta/8). The result loses digits close to 180 deg.
+/// The logarithm of rotations by less than 180 deg. The angle theta is computed from tan(theta/2) = sin(theta) / (1 +
+/// cos(theta)), which loses no digits at the small angles of residuals; beyond 37 deg it is computed from tan(theta/8).
+/// The result loses digits close to 180 deg.
 template <class T>
 inline RotationLog<T> rotation_log(const T* r) {
   const T half(0.5);

@@ -14,7 +14,8 @@
 
 namespace poesy::three_prs {
 
-/// One limb with its errors, in the base frame (m). The drive holds the carriage at its nominal displacement.
+/// One limb with its errors (m). Vectors are in the base frame, except the rod. The drive holds the carriage at its
+/// nominal displacement.
 struct LimbWithErrors {
   lie::Vector3<double> carriage;         ///< centre of the revolute joint
   lie::Matrix3<double> base_R_revolute;  ///< second column: axis of the revolute joint
@@ -79,7 +80,7 @@ struct ClosureIteration {
   lie::Screw<double> residual;
   lie::Screw<double> step;  ///< step [delta; dr] (rad, m)
 };
-/// Called after each iteration.
+/// A function that the solver calls after each iteration.
 using ClosureObserver = std::function<void(const ClosureIteration&)>;
 
 /// Finds the motion (E, dr) of the platform at which all limbs close, for errors of finite size. In the symbols of San
@@ -105,10 +106,10 @@ using ClosureObserver = std::function<void(const ClosureIteration&)>;
 Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::Vector3<double>& r, double orientation,
                     const SolverOptions& options, PlatformMotion& motion, const ClosureObserver& observe = {});
 
-/// Returns true if the limbs cannot be assembled near `start`. From there, a descent (linalg::comes_to_rest()) leads to
-/// a minimum of the mismatch of the limbs. If the limbs are still apart by more than 1e-9 of |r| at the minimum, the
-/// result is true: the three limbs of the 3-PRS do not over-constrain it, so in a machine that can be assembled there
-/// the mismatch would vanish. Returns false if the descent does not converge.
+/// Returns true if the limbs cannot be assembled near `start`. From `start`, a descent (linalg::comes_to_rest()) leads
+/// to a minimum of the mismatch of the limbs. The result is true if the mismatch at the minimum is more than 1e-9 of
+/// |r|: the three limbs of the 3-PRS do not over-constrain it, so the mismatch vanishes if the machine can be assembled
+/// near `start`. Returns false if the descent does not converge.
 bool is_impossible(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::Vector3<double>& r,
                    const PlatformMotion& start);
 
@@ -116,10 +117,11 @@ bool is_impossible(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::V
 double swing(const LimbWithErrors& limb, const lie::Vector3<double>& r, const PlatformMotion& motion);
 
 /// Solves the closure of all limbs for blocks of samples with the fastest kernel that this machine supports.
-/// close_limbs() solves the samples that the kernel gives up. Owns the scratch memory of one thread.
+/// close_limbs() solves the samples that the kernel gives up. An object has scratch memory, so each thread needs its
+/// own object.
 class ClosureSolver {
  public:
-  /// Allocates the scratch memory of one thread.
+  /// Allocates the scratch memory.
   ClosureSolver(const Geometry& geometry, const SolverOptions& options);
 
   /// Computes responses, status and iterations of a block of samples at its nominal configuration, but not the swings

@@ -14,8 +14,8 @@ namespace poesy::three_prs {
 /// whose solve has ended keeps its motion, and no operation mixes lanes.
 ///
 /// The rows of the Jacobian are eliminated in the same order for all samples of a pose. The kernel gives up a sample if
-/// its pivots differ by a factor of more than 1e6, a step is large or not finite, an attitude error exceeds 100 rad, or
-/// the final rotation exceeds 120 deg.
+/// the pivots of its Jacobian differ by a factor of more than 1e6, a step is large or not finite, an attitude error
+/// exceeds 100 rad, or the final rotation exceeds 120 deg.
 template <class T>
 class ClosureKernel {
  public:
@@ -69,8 +69,8 @@ class ClosureKernel {
   void begin(std::size_t g);
   bool round(std::size_t g, std::uint32_t iteration);
   void move(Group& group, const T* step, Mask lanes) const;
-  /// Stores the status and iterations of lanes that have ended, given as bits. No iterations are stored for lanes that
-  /// are given up.
+  /// Stores the status and iterations of lanes that have ended, given as bits. Lanes that are given up have 0
+  /// iterations.
   void end(std::size_t g, unsigned lanes, SolveStatus status, std::uint32_t iterations) const;
   void store(std::size_t g);
 
@@ -100,7 +100,7 @@ inline void second_column(const T* w, const simd::ExpCoefficients<T>& c, T* x) {
   x[2] = madd(c.a, w[0], scaled * w[2]);
 }
 
-/// Rotates x about the z axis.
+/// Rotates x about the z axis by the angle that has this cosine and sine.
 template <class T>
 inline void turn(double cosine, double sine, T* x) {
   const T before = x[0];
@@ -149,7 +149,8 @@ auto ClosureKernel<T>::limb_with_errors(const ClosureLimb& limb, std::size_t at)
 
   const T length = T(pose_.l) + error[static_cast<std::size_t>(Source::l)];
   out.rod_y = length * nmadd(exp_Bp.a, theta_Bp[0], exp_Bp.b * theta_Bp[1] * theta_Bp[2]);
-  // Beyond the range of the sine the equations have no value. The NaN makes the kernel give up the sample.
+  // The sine is not valid beyond 100 rad. A larger attitude error makes length2 NaN, so that the kernel gives up the
+  // sample.
   const T largest = max(angle2_A, max(angle2_B, angle2_Bp));
   out.length2 = select(largest < T(kLargestAngle2), length * length, T(__builtin_nan("")));
   return out;
@@ -171,7 +172,7 @@ void ClosureKernel<T>::evaluate(const Group& group, Equations& equations) const 
 }
 
 /// Computes the first step of a solve: a Newton step from zero displacement with the nominal Jacobian. Returns the
-/// lanes in which it is short enough to be used.
+/// lanes in which the step is short enough to be used.
 template <class T>
 auto ClosureKernel<T>::first_step(const Group& group, T* step) const -> Mask {
   Equations equations;

@@ -49,7 +49,7 @@ void set_constraint_row(LimbRow row, const LimbConfiguration& limb, double l, co
   row.set(Source::c, -v_in_platform_limb);
 }
 
-/// Sets the swing of a rod caused directly by its limb's errors, without the platform's motion. d_in_platform_limb:
+/// Sets the effects of a limb's errors on the swing of its rod while the platform does not move. d_in_platform_limb:
 /// unit direction in which the end of the rod swings, in the limb's frame on the platform.
 void set_swing_row(LimbRow row, const LimbConfiguration& limb, double l, const RowVector3& d_in_platform_limb) {
   const double cosine = std::cos(limb.swing);
@@ -117,8 +117,8 @@ Separation separation(const Geometry& geometry, const Configuration& nominal) {
   const Matrix drive = by_drive * G.topRows<3>();
   const Matrix constraint = by_rows.rightCols<3>() * G.bottomRows<3>();
   const Matrix effect = drive + constraint;
-  // Least squares. Corrections can reach the whole span of by_drive, which contains the drive part, and nothing
-  // perpendicular to it.
+  // This is the residual of a least-squares problem: corrections can reach the whole span of by_drive, which contains
+  // the drive part, and nothing perpendicular to this span.
   const Matrix residual = linalg::orthogonal_complement(by_drive).transpose() * constraint;
   return {column_norms(drive), column_norms(constraint), column_norms(effect), column_norms(residual)};
 }

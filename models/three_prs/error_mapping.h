@@ -43,7 +43,7 @@ Separation separation(const Geometry& geometry, const Configuration& nominal);
 
 /// The first-order motions of the platform by its carriages, and the best correction of a displacement.
 struct Corrections {
-  /// [12 x 3] Motion per unit displacement of each carriage, rows as in Effects.
+  /// [12 x 3] Motion per displacement of each carriage (rad/m, m/m), rows as in Effects.
   Eigen::Matrix<double, kMotions, static_cast<int>(kLimbs)> motions;
   /// [3 x 6] The matrix that maps a displacement x = [theta; dr] to the correction dq that minimises the norm of x -
   /// motions.topRows<6>() dq. The norm is that of separation().
@@ -53,9 +53,9 @@ struct Corrections {
 /// The corrections at a nominal configuration. Not finite at a singular pose.
 Corrections corrections(const Geometry& geometry, const Configuration& nominal);
 
-/// [60] The paper's class of each error. "compensable": the 30 errors that enter the drive rows (24 in the paper, whose
-/// scalar c is c_x, c_y and c_z here). "non-compensable": the 21 errors that enter the constraint rows. Empty: the 9
-/// errors without effect.
+/// The description of separation(), with the paper's class of each of the 60 errors. "compensable": the 30 errors that
+/// enter the drive rows (24 in the paper, whose scalar c is c_x, c_y and c_z here). "non-compensable": the 21 errors
+/// that enter the constraint rows. Empty: the 9 errors without effect.
 SeparationDescription separation_description();
 
 }  // namespace poesy::three_prs

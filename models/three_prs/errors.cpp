@@ -44,7 +44,7 @@ constexpr std::array<Entry, kSources> kEntries{{{0, "a", "x", Role::compensable}
                                                 {7, "c", "y", Role::compensable},
                                                 {7, "c", "z", Role::compensable}}};
 
-/// The body that the errors of a frame displace, and the axes along which the errors are measured.
+/// The errors of a frame in words, and the names of the axes along which they are measured.
 struct Meaning {
   std::string_view part;
   std::array<std::string_view, 3> axes;

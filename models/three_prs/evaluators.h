@@ -9,7 +9,7 @@
 
 namespace poesy::three_prs {
 
-/// Number of responses that are vector components. These are the rows of Effects from kTheta, kDr and kTip on.
+/// Number of responses that are components of vectors. They have the order of the first nine rows of Effects.
 inline constexpr std::size_t kComponents = 9;
 inline constexpr std::size_t kResponses = kComponents + 3;
 

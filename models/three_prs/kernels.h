@@ -23,14 +23,14 @@ inline constexpr std::size_t kVectorRows = 9;
 inline constexpr std::size_t kResponseRows = 12;
 inline constexpr std::size_t kDetailRows = 3;  ///< number of additional outputs: swings of the three rods
 
-/// At most kTile samples. Each error or response has a row of numbers, one for each sample: number v of sample b is at
-/// v * stride + b. Rows can be read and written up to the next multiple of kMostLanes; the numbers behind the last
-/// sample are overwritten.
+/// At most kTile samples. Each error or response has a row of numbers, one for each sample: row v has the number of
+/// sample b at v * stride + b. Rows can be read and written up to the next multiple of kMostLanes; the numbers behind
+/// the last sample are overwritten.
 struct Tile {
   std::size_t count;            ///< number of samples
   const double* values;         ///< [varied x stride] values of the varied errors, SI
   std::size_t values_stride;    ///< distance between rows of values, in numbers
-  double* responses;            ///< [kResponseRows x stride] responses
+  double* responses;            ///< [kResponseRows x stride] responses (rad, m)
   double* details;              ///< [kDetailRows x stride] swings of the rods (rad), or null if they are not wanted
   std::size_t outcomes_stride;  ///< distance between rows of responses and of swings, in numbers
   SolveStatus* status;          ///< [count] status of each sample
@@ -53,9 +53,9 @@ struct ClosureLimb {
   double sine;                     ///< sine of that angle
   double base_R_platform_limb[9];  ///< rotation R R_i from the limb's frame on the platform (R_i) through the
                                    ///< platform's frame (R) to the base frame
-  double joint[3];                 ///< from P to C_i, base frame
+  double joint[3];                 ///< from P to C_i, base frame (m)
   double q;                        ///< nominal displacement of the carriage (m)
-  double error[kSources];          ///< constant part of each error, in the order of Source
+  double error[kSources];          ///< constant part of each error (rad, m), in the order of Source
   int varied_row[kSources];        ///< row of Tile::values that replaces the error; -1 if it is constant
   bool varies;                     ///< true if any error of the limb varies
 };
@@ -79,10 +79,10 @@ struct ClosurePose {
 
 /// The stopping rule of the iteration.
 struct ClosureOptions {
-  /// A solve converges if no component of [delta; dr] (rad, m) changes by more than this.
+  /// A solve has converged if every component of [delta; dr] (rad, m) changes by less than this.
   double tolerance;
-  double rounding;               ///< a change below this may be rounding; see rounding_level()
-  std::uint32_t max_iterations;  ///< number of iterations after which a sample is given up
+  double rounding;               ///< a change below this (rad, m) may be rounding; see rounding_level()
+  std::uint32_t max_iterations;  ///< largest number of iterations; then the status is iteration_cap
 };
 
 /// The number of doubles of scratch memory that close_tile needs with any instruction set.

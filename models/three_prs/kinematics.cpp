@@ -51,7 +51,7 @@ Pose moved(const Pose& pose, const Matrix3& R, const lie::Screw<double>& twist) 
 Vector3 carriages(const Configuration& at) { return {at.limbs[0].q, at.limbs[1].q, at.limbs[2].q}; }
 
 /// Returns true if a point is so far away that squares of its distance may overflow, or that rounding there exceeds the
-/// size of the mechanism. Nearer points that the rails do not reach get a message of their own.
+/// size of the mechanism. Nearer points that the limbs do not reach are rejected by the model, with the reason.
 bool is_far(const Geometry& g, const Vector3& place) {
   constexpr double kReaches = 1e6;
   const double reach = g.rail + g.a + g.l + g.c + g.h;

@@ -32,7 +32,7 @@ struct LimbConfiguration {
   double swing;
   lie::Vector3<double> c;  ///< c_i: from P to the spherical joint, base frame, m
   lie::Vector3<double> w;  ///< unit vector along the rod, base frame
-  lie::Vector3<double> v;  ///< unit vector along the revolute joint, base frame
+  lie::Vector3<double> v;  ///< unit vector along the revolute joint's axis, base frame
 };
 
 /// The mechanism at a nominal pose.

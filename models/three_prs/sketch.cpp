@@ -11,7 +11,8 @@ namespace {
 using Vector3 = lie::Vector3<double>;
 using Matrix3 = lie::Matrix3<double>;
 
-/// The place in a limb at which an error source acts. The members have the meanings of those of SketchedError.
+/// The place in a limb at which an error source acts. Its members have the meanings of the same members of
+/// SketchedError.
 struct Site {
   std::size_t frame;
   std::size_t after;

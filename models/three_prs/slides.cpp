@@ -15,8 +15,8 @@ using Matrix3 = lie::Matrix3<double>;
 
 constexpr std::size_t kXSlide = kLimbs + 1;
 constexpr std::size_t kYSlide = kLimbs + 2;
-/// The frames of the slides, numbered after those of the head. Each slide has frames of its own, because slides are not
-/// copies of one another.
+/// The frames of the slides, numbered after those of the head. Limbs share the numbers of their frames, because limbs
+/// are alike; the frames of the two slides have different numbers.
 enum Frame : std::size_t { kXTranslation = kFrames, kXRotation, kYTranslation, kYRotation, kSquareness };
 
 struct Entry {

@@ -18,7 +18,8 @@ struct Travel {
 };
 
 /// The index of the first component of each error of the slides. Vectors have three components (x, y, z); squareness is
-/// a scalar. An error is stated for the commanded position of its slide. EXX and so on are the symbols of ISO 230-1.
+/// a scalar. The value of an error is that at the commanded position of its slide. EXX and so on are the symbols of ISO
+/// 230-1.
 enum class SlideSource : std::size_t {
   x_translation = 0,  ///< translation errors of the X slide along x, y and z: EXX, EYX, EZX
   x_rotation = 3,     ///< rotation errors of the X slide about x, y and z: EAX, EBX, ECX
@@ -39,9 +40,10 @@ std::vector<Factor> slide_factors();
 /// slide_y, 0):
 ///     R = E_x E_y,  E = exp of a slide's rotation,
 ///     p = (EXX, EYX, EZX) + E_x Rz(C0Y) (EXY, slide_y + EYY, EZY) - (0, slide_y, 0).
-/// Each slide rotates the parts that it carries about the origin of its carriage, which is the origin of the head's
-/// frame at slide_y = 0 (X slide), or at any slide_y (Y slide). Squareness rotates the travel and straightness
-/// directions of the Y slide, but not the head, which is aligned on its carriage at slide_y = 0.
+/// Each slide rotates the parts that it carries about the origin of its carriage. The origin of the Y slide's carriage
+/// is the origin of the head's frame; that of the X slide's carriage is the same point at slide_y = 0. Squareness
+/// rotates the travel and straightness directions of the Y slide, but not the head, which is aligned on its carriage at
+/// slide_y = 0.
 lie::Transform<double> nominal_T_head(double slide_y, SlideErrors errors);
 
 using SlideEffects = Eigen::Matrix<double, kSwing, static_cast<int>(kSlideFactors), Eigen::RowMajor>;

@@ -9,7 +9,8 @@ namespace poesy::three_prs {
 
 inline constexpr std::size_t kLimbs = 3;
 
-/// The index of each error source's first component among the errors of a limb.
+/// The index of each error source's first component among the errors of a limb. {O_i} is the base frame rotated about z
+/// to the limb; sketch() in sketch.h states the other frames.
 enum class Source : std::size_t {
   a = 0,          ///< position of the rail's upper end A_i, in {O_i}
   q = 3,          ///< initial position of the carriage along the rail

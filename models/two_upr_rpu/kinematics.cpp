@@ -11,8 +11,8 @@ using Vector3 = lie::Vector3<double>;
 
 constexpr double kQuarter = std::numbers::pi / 2.0;
 
-/// The angle from a to b about the normal, in [-pi/2, 3 pi/2). Between 0 and pi it equals the paper's arccos. It
-/// continues outside this range, which a leg leaves if it swings past the line of the platform.
+/// The angle from a to b about the normal, in [-pi/2, 3 pi/2). Between 0 and pi it equals the paper's arccos. Unlike
+/// arccos, it continues beyond pi and below 0 if a leg swings past the line of the platform.
 double angle(const Vector3& a, const Vector3& b, const Vector3& normal) {
   const double turn = std::atan2(normal.dot(a.cross(b)), a.dot(b));
   return turn < -kQuarter ? turn + 4.0 * kQuarter : turn;

@@ -12,8 +12,8 @@
 namespace poesy {
 namespace {
 
-/// The joints of each limb that move, as letters in their order: "UPR" of limb 1. A limb has no entry if none of its
-/// joints moves.
+/// For each limb (numbers from 1), the types of its joints that are not fixed, in their order: "UPR". A limb
+/// has no entry if all its joints are fixed.
 using LimbJoints = std::map<std::size_t, std::string>;
 
 LimbJoints joints_of(const Study& study) {

@@ -9,8 +9,8 @@
 /// Compares the joints of limbs, because limbs with different joints are not made alike.
 namespace poesy {
 
-/// A commented line of a template that names the first two limbs with errors and the same joints, as an example of the
-/// key identical_limbs. Empty if there are no such limbs.
+/// A line of a study template, commented out, that shows the key identical_limbs with two limbs as an example: the
+/// first two limbs that have errors and the same joints. Empty if there are no such limbs.
 std::string shown_identical_limbs(const Study& study);
 
 /// A warning that these limbs do not all have the same joints. Empty if all have the same joints, or if the mechanism

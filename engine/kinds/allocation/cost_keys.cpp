@@ -20,11 +20,11 @@ using Law = StatedCost::Law;
 /// The names of cost laws in study files, in the order of StatedCost::Law.
 constexpr std::array<std::string_view, 4> kLawNames{"none", "reciprocal", "reciprocal-power", "exponential"};
 
-/// A cost as a study file states it. Its coefficient b is for a tolerance in the stated unit.
+/// A cost as a study file states it. While a file is read, the coefficient b of the cost is for a tolerance in `unit`.
 struct WrittenCost {
   StatedCost cost = {};
   Dimension dimension = Dimension::length;
-  std::string unit = {};   ///< the unit of the tolerance as written; empty: none stated
+  std::string unit = {};   ///< the unit of the tolerance as written; empty if the file states none
   double unit_size = 1.0;  ///< size of the unit, SI
 };
 

@@ -14,14 +14,14 @@
 namespace poesy::allocation {
 namespace {
 
-/// The load of the last machine that is still rejected if the deciding load (deciding_load()) is at the limit. Infinite
-/// if no reject is allowed.
+/// The next larger load after the deciding load (deciding_load()): the smallest load of the `rejects` worst machines.
+/// Infinite if rejects = 0.
 double load_before_deciding(const std::vector<double>& load, std::uint64_t rejects) {
   return rejects == 0 ? std::numeric_limits<double>::infinity() : deciding_load(load, rejects - 1);
 }
 
-/// The factor on all tolerances with which the deciding load (deciding_load()) gets just below 1. The next larger load,
-/// `before`, stays above 1, however close the two loads are.
+/// The factor by which all tolerances are multiplied so that the deciding load, `deciding`, becomes slightly smaller
+/// than 1. The next larger load, `before`, stays above 1, however close the two loads are.
 double factor_to_limit(double deciding, double before) {
   constexpr double kWithin = 1.0 + 0.5 * kFinalLoadTolerance;
   const double between = before > deciding && std::isfinite(before) ? std::sqrt(before / deciding) : kWithin;
@@ -142,7 +142,8 @@ PartScores part_scores(const SearchProblem& problem, const ToleranceDesign& desi
       of_error[p] += x * x - 1.0;
     }
   }
-  // A coarser orientation leaves less of the location zone to the middle of the feature, which may raise the yield.
+  // A coarser orientation leaves less of the location zone to the middle of the feature, which may raise the yield. So
+  // the score of an orientation may also be significant if it is negative.
   std::vector<bool> may_fall(problem.programme.size(), false);
   for (const Within& pair : problem.programme.pairs()) may_fall[pair.inner] = true;
   PartScores scores;
@@ -153,7 +154,7 @@ PartScores part_scores(const SearchProblem& problem, const ToleranceDesign& desi
       sum += growth * of_error[p];
       squares += growth * growth;
     }
-    // The score x^2 - 1 of a normal error in one machine has variance 2; other shapes have less.
+    // In one machine, x^2 - 1 has the variance 2 for a normal error, and less for errors of other shapes.
     const double noise = std::sqrt(2.0 * static_cast<double>(machines.size()) * squares);
     scores.of_part.push_back(sum);
     scores.is_sure.push_back((may_fall[i] ? std::abs(sum) : sum) > kSignificance * noise);

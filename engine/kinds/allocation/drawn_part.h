@@ -26,8 +26,8 @@ double mean_square_per_tolerance(const Spread& spread);
 /// Errors whose mean squares depend equally on the tolerance T of a part.
 struct DrawnErrors {
   std::vector<std::size_t> errors;  ///< positions of the errors among those of the study
-  /// The mean square of each error, divided by T^2. It is negative for errors that become larger if the tolerance
-  /// becomes finer: a finer zone of orientation leaves more of the zone of location to the middle of its feature.
+  /// What the tolerance T adds to the mean square of each error, divided by T^2. Negative for errors that become larger
+  /// if T becomes finer: a finer zone of orientation leaves more of the zone of location to the middle of the feature.
   double mean_square;
 };
 

@@ -119,7 +119,7 @@ const Fields<AllocationStage> kStageFields{
 
 constexpr const char* kCertificate = "/allocation/certificate";
 
-/// The verdict on the certificate's machines, in the group of the certificate.
+/// The fields of YieldVerdict for the certificate's machines, in the group of the certificate.
 const Group<YieldVerdict> kVerdict{
     kCertificate,
     "What fresh machines show of the tolerances: their number is set beforehand, their seed serves nothing else, and "
@@ -134,7 +134,8 @@ const Group<YieldVerdict> kVerdict{
      {"ci_low", &YieldVerdict::ci_low, "1", "Lower end of its two-sided interval (Clopper and Pearson)"},
      {"ci_high", &YieldVerdict::ci_high, "1", "Upper end of its two-sided interval (Clopper and Pearson)"}}};
 
-/// The seed of the certificate's machines, and numbers of machines.
+/// Further fields of the group of the certificate: the seed of its machines, its allowed rejects, and the machines and
+/// rejects of the design.
 const Fields<Result> kMachines{
     {"seed", &Result::certificate_seed, "1", "Seed of the fresh machines"},
     {"most_rejects", &Result::certificate_most, "1", "The certificate holds with no more rejects than these"},
@@ -187,7 +188,7 @@ void read_certificate(const h5::File& file, Result& found) {
   }
 }
 
-/// Adds attributes for programs that read only the file: texts, and numbers that follow from other data.
+/// Adds attributes for other programs that read the file: texts, and numbers that also follow from other data.
 void add_attributes(h5::File& file, const Result& found) {
   const auto set = [&](const char* name, const auto& value) { file.set_attribute(kAllocation.path, name, value); };
   set("yield", found.certificate.value);
@@ -266,7 +267,8 @@ void read(const h5::File& file, StoredResult& result) {
   check(found);
   found.solves = read_solver<decltype(found.solves)>(file);
   found.certificate.solves = found.total();
-  // The pose and number of a failed sample are those in the certificate's own study, which can replay the sample.
+  // A failed sample is stored with its pose and its number in the study of the certificate, with which it can be
+  // replayed.
   result.varied = {std::string(kAllFactors)};
   found.failures = read_failures(file, result);
   result.varied.clear();
@@ -274,7 +276,7 @@ void read(const h5::File& file, StoredResult& result) {
   result.found = std::move(found);
 }
 
-/// The row for the dataset with this name in the table of fields of the group /allocation.
+/// The entry of kAllocation.fields for the dataset with this name.
 const FieldRow<Result>& row(std::string_view name) {
   return *std::ranges::find(kAllocation.fields, name, &FieldRow<Result>::name);
 }
@@ -368,7 +370,7 @@ CsvTable stage_table(const Result& found) {
   return table;
 }
 
-/// A CSV table of predicted costs: first for other yields, then with all limits multiplied by a factor.
+/// A CSV table of predicted costs: first the lines for other yields, then those for all limits multiplied by a factor.
 CsvTable curve_table(const Result& found) {
   const std::size_t yields = found.curve_yield.size();
   const auto of = [yields](std::span<const double> by_yield, std::span<const double> by_factor) {

@@ -10,7 +10,8 @@
 namespace poesy::allocation {
 namespace {
 
-/// [parts] The share of each part in the sum of all mean squares under limits, each weighted by the limit's multiplier.
+/// [parts] The share of each part in a weighted sum of the mean squares that parts cause under all limits. The weight
+/// of a limit is its multiplier.
 std::vector<double> shares_by_multipliers(const ToleranceLimits& limits, const Candidate& candidate) {
   std::vector<double> shares(limits.parts, 0.0);
   for (std::size_t l = 0; l < limits.count(); ++l) {
@@ -40,9 +41,9 @@ std::vector<std::uint32_t> machines_of_largest_load(const SearchProblem& problem
   return machines;
 }
 
-/// A limit on one weighted sum of the parts' T^2, which replaces all limits. At the present tolerances, the share of a
-/// part in the sum is its score among the machines with the largest loads, or, if the score is not significant, its
-/// share in the mean squares. shares: [parts].
+/// A limit on one weighted sum of T^2 over the parts, which replaces all limits. At the present tolerances, the
+/// contribution of a part to this sum is proportional to the part's score among the machines with the largest loads. If
+/// the score is not significant, the contribution is given by `shares` [parts], the parts' shares in the mean squares.
 ToleranceLimits gradient_limit(const SearchProblem& problem, const ToleranceDesign& design,
                                std::span<const double> shares) {
   const auto [scores, is_sure] = part_scores(problem, design, machines_of_largest_load(problem, design));
@@ -60,7 +61,8 @@ ToleranceLimits gradient_limit(const SearchProblem& problem, const ToleranceDesi
   return limit;
 }
 
-/// Chooses tolerances under this limit, and scales the limit until they keep the yield. None if they save too little.
+/// Chooses tolerances under this limit, and scales the limit until the screened machines keep the yield. None if these
+/// tolerances save too little of the cost, or if no tolerances keep the limit.
 std::optional<ToleranceDesign> fit_gradient(const SearchProblem& problem, const ToleranceDesign& from,
                                             ToleranceLimits limit) {
   const TolerancePoint& before = from.candidate.point;

@@ -15,13 +15,13 @@
 namespace poesy {
 namespace {
 
-/// "normal, sigma 0.02 mm".
+/// The distribution and the standard deviation of an error: "normal, sigma 0.02 mm".
 std::string size_text(const UnallocatedError& error) {
   return fmt::format("{}, sigma {}", error.distribution, response_text(error.named, error.sigma));
 }
 
-/// The errors with their sizes, and each size once: "a, b (normal, sigma 0.02 mm); c (uniform, sigma 0.1 deg)". Errors
-/// of further sizes than the first three are counted: "; and 4 more errors".
+/// The names of the errors, grouped by size: "a, b (normal, sigma 0.02 mm); c (uniform, sigma 0.1 deg)". Only the first
+/// three groups are named. The errors of all other groups are counted: "; and 4 more errors".
 std::string names_and_sizes(const std::vector<UnallocatedError>& errors) {
   std::vector<std::pair<std::string, std::vector<std::string>>> groups;
   for (const UnallocatedError& error : errors) {

@@ -7,8 +7,8 @@
 #include "engine/result/result_file.h"
 #include "engine/study/study.h"
 
-/// The errors of an allocation that vary but are in no part. Their sizes are not found: the search and the certificate
-/// draw them as the study states them, so the certificate is valid only if they keep these sizes.
+/// The errors of an allocation that vary but are in no part. The search does not choose their sizes. Search and
+/// certificate draw them with the sizes that the study states, so the certificate is valid only for these sizes.
 namespace poesy {
 
 /// An error that varies and is in no part, with the distribution with which it is drawn.

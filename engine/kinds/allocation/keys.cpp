@@ -32,8 +32,8 @@ constexpr std::array<std::string_view, 12> kAllocationKeys{"factors", "limits", 
 /// The names of the aims (Aim) in study files, in the order of the enumeration.
 constexpr std::array<std::string_view, 4> kAimNames{"least-cost", "equal-effect", "equal-tolerance", "common-factor"};
 
-/// The expected number of rejects in a study with the default number of machines, which estimates 1 - yield to about 5
-/// %.
+/// The expected number of rejects in a study with the default number of machines. With so many rejects, the error of
+/// the estimated share of rejects is about 5 %.
 constexpr double kUsualRejects = 400.0;
 constexpr double kFewestUsual = 2000.0;
 constexpr double kMostUsual = 20e6;
@@ -85,8 +85,8 @@ void check_own_errors(const StudySection& block, std::span<const AllocatedPart> 
   }
 }
 
-/// Adds a warning to the study if the block joins errors of limbs with different joints, unless an earlier block has
-/// caused this warning.
+/// Adds a warning to the study if the block names limbs with different joints as identical, unless the study already
+/// has the same warning.
 void doubt_unlike_limbs(const StudySection& block, Study& study) {
   const auto identical = block.find("identical_limbs");
   if (!identical) return;
@@ -155,9 +155,9 @@ std::string parts_lines(const Study& study) {
   return text;
 }
 
-/// A line of a template with the key identical_limbs for the limbs that have features of the same names, which share a
-/// tolerance in most drawings. The line of shown_identical_limbs() if there are none, or if their names or joints
-/// differ.
+/// A line of a template with the key identical_limbs and the limbs that have features of the same names, because such
+/// limbs share tolerances in most drawings. The line of shown_identical_limbs() if there are no such limbs, if not
+/// every shared name is in the same limbs, or if these limbs have different joints.
 std::string limbs_with_alike_features(const Study& study) {
   std::map<std::string, std::set<std::size_t>> limbs_of;
   for (const Feature& feature : study.model().features) limbs_of[feature.label].insert(feature.limb);

@@ -4,8 +4,8 @@
 
 namespace poesy {
 
-/// How results of studies of kind `allocation` are stored and reported. Such a study finds the tolerances of parts
-/// under limits.
+/// How results of studies of kind `allocation` are stored and reported. A study of this kind finds tolerances of parts
+/// with which the wanted share of machines keeps all limits.
 /// @{
 extern const FileKind kAllocationFile;
 extern const ReportKind kAllocationReport;

@@ -1,4 +1,5 @@
-// The first stages of the search: solving the programme with limits on root mean squares.
+// The first stages of the search: they solve the optimisation problem (ToleranceProgramme) with limits on root mean
+// squares.
 
 #include <algorithm>
 #include <cmath>

@@ -18,11 +18,11 @@
 
 namespace poesy {
 
-/// The number of machines that one thread solves together at each pose, as a piece of work.
+/// The largest number of machines in a piece of work. One thread solves these machines together at each pose.
 inline constexpr std::size_t kMachinesOfPiece = 200;
 
-/// The counts of a piece of work that does not record how its solves ended: all of them count as converged. Only
-/// machine_loads(), which tries all machines, records how solves ended.
+/// SolveCounts for a piece of work that does not record how its solves ended: all solves count as converged. Only
+/// machine_loads() records how solves ended.
 inline SolveCounts as_converged(std::uint64_t solves) {
   SolveCounts counts;
   counts.by_status[static_cast<std::size_t>(SolveStatus::converged)] = solves;
@@ -56,8 +56,8 @@ class LoadSolver : protected UnitSolver {
     plan_->transform(std::span(values_).first(errors * count), count);
   }
 
-  /// Calibrates the machines whose errors are in `values_` [errors x machines], if the study calibrates machines. The
-  /// following solves are of these machines after calibration.
+  /// If the study calibrates machines: calibrates those whose errors are in `values_` [errors x machines]. All
+  /// following solves are of the calibrated machines.
   void calibrate(std::span<const std::size_t> machines) {
     if (calibrator_ == nullptr) return;
     calibrated_ = calibration_->evaluator((*calibrator_)(all_errors(drawn(machines.size())), machines));
@@ -74,7 +74,8 @@ class LoadSolver : protected UnitSolver {
     return errors;
   }
 
-  /// Makes room for the values of this number of machines at all poses, if some limit is judged over several poses.
+  /// Allocates memory for the values of this number of machines at all poses, if some limit is judged from several
+  /// poses together (RelativeLimits::is_over_poses()).
   void begin_poses(std::size_t machines) {
     const std::size_t poses = plan_->poses().size();
     if (limits_.any_over_poses()) at_poses_.assign(limits_.size() * machines * poses, 0.0);
@@ -82,7 +83,7 @@ class LoadSolver : protected UnitSolver {
 
   /// Solves the drawn machines at one pose and raises their loads [machines] to the largest so far. Sets `missing`
   /// [machines] to 1 for a machine that is not solved, and `beyond` [limits x machines] to 1 for a machine that breaks
-  /// the limit. Limits over poses are evaluated by end_poses().
+  /// the limit. For limits that are judged from several poses together, only records the values for end_poses().
   UnitOutcomes add_pose(PoseIndex pose, std::span<double> loads, std::span<std::uint8_t> missing,
                         std::span<std::uint8_t> beyond) {
     const std::size_t count = loads.size();
@@ -106,8 +107,9 @@ class LoadSolver : protected UnitSolver {
     return outcomes;
   }
 
-  /// Raises the loads of the machines to those under limits over poses, if these are larger, and sets `beyond` [limits
-  /// x machines], as add_pose() does. The loads of machines that are not solved at some pose are meaningless.
+  /// Raises the loads [machines] to those under limits that are judged from several poses together, if these loads are
+  /// larger, and sets `beyond` [limits x machines] as add_pose() does. The loads of machines that are not solved at
+  /// some pose are meaningless.
   void end_poses(std::span<double> loads, std::span<std::uint8_t> beyond) {
     const std::size_t count = loads.size();
     for (std::size_t k = 0; k < limits_.size(); ++k) {
@@ -123,7 +125,7 @@ class LoadSolver : protected UnitSolver {
   const RelativeLimits& limits_;  ///< limits of the study
 
  private:
-  /// [poses] The recorded values of a machine under limit k, one for each pose.
+  /// [poses] The values that were recorded for a machine under limit k. count: number of machines in the piece of work.
   std::span<double> values_over_poses(std::size_t k, std::size_t machine, std::size_t count) {
     const std::size_t poses = plan_->poses().size();
     return std::span(at_poses_).subspan((k * count + machine) * poses, poses);
@@ -145,8 +147,8 @@ class LoadSolver : protected UnitSolver {
   const MachineCalibration* calibration_;
   std::unique_ptr<MachineCalibrator> calibrator_;  ///< null: machines are not calibrated
   std::unique_ptr<Evaluator> calibrated_;          ///< evaluator of the machines that were calibrated last
-  /// [limits x machines x poses] Values at each pose for limits over poses: the response for a limit on a spread,
-  /// otherwise the load. Empty without such a limit.
+  /// [limits x machines x poses] Values for limits that are judged from several poses together: the response (SI) for a
+  /// limit on a spread, otherwise the load. Empty without such a limit.
   std::vector<double> at_poses_;
 };
 

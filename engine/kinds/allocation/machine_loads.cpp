@@ -14,8 +14,8 @@ namespace {
 
 /// The machines that a run solves.
 struct Machines {
-  std::size_t count;                      ///< n, the number of machines
-  std::span<const std::uint32_t> listed;  ///< [n] their numbers in the plan; empty: 0 .. n - 1
+  std::size_t count;                      ///< number of machines
+  std::span<const std::uint32_t> listed;  ///< [machines] their numbers in the plan; empty: 0 .. count - 1
 
   std::size_t pieces() const { return (count + kMachinesOfPiece - 1) / kMachinesOfPiece; }
   std::size_t first(std::size_t piece) const { return piece * kMachinesOfPiece; }
@@ -54,7 +54,7 @@ struct LoadSums : MachineLoads {
   }
 };
 
-/// Solves a piece of work. Owns the scratch memory of one thread.
+/// Computes the loads of the machines of a piece of work. Owns the scratch memory of one thread.
 class LoadEvaluator : private LoadSolver {
  public:
   LoadEvaluator(const Plan& plan, const Model& model, const RelativeLimits& limits, const Machines& machines,
@@ -103,7 +103,7 @@ class LoadEvaluator : private LoadSolver {
   const Machines& machines_;
   std::vector<std::size_t> numbers_;   ///< [machines] numbers of the machines
   std::vector<double> at_pose_;        ///< [machines] loads at one pose
-  std::vector<std::uint8_t> missing_;  ///< [machines] 1 if some pose is not solved
+  std::vector<std::uint8_t> missing_;  ///< [machines] 1 if the machine is not solved at some pose
   std::vector<std::uint8_t> beyond_;   ///< [limits x machines] 1 if the limit is broken at some pose
 };
 

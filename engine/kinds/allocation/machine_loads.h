@@ -28,10 +28,10 @@ struct MachineLoads {
 };
 
 /// Solves machines of a plan: all of them, or those that are listed (ascending numbers below plan.samples()). Machine s
-/// has the errors of sample s of a Monte Carlo study with draws per machine; if that study calibrates its machines, it
-/// has the same noise as well. The result has the same bits for any number of threads and on all ranks. None if the run
-/// was stopped. calibration: of the plan's study; null: machines are not calibrated. Precondition: the study draws
-/// errors per machine.
+/// has the errors of sample s of a Monte Carlo study with draws per machine; if that study calibrates its machines, the
+/// measurement noise of machine s is the same too. The result has the same bits for any number of threads and on all
+/// ranks. None if the run was stopped. calibration: how the machines are calibrated; null: they are not. Precondition:
+/// the study draws errors per machine.
 /// @{
 std::optional<MachineLoads> machine_loads(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
                                           const RunOptions& options, const MachineCalibration* calibration = nullptr);

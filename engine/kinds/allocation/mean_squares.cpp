@@ -21,10 +21,11 @@ namespace {
 /// mean mu, its standard deviation sigma and c = Distribution::centre().
 constexpr std::size_t kNodes = 3;
 constexpr std::size_t kDrawsOfPiece = 16;  ///< number of draws of the other errors in a piece of work
-/// If a sample with one varied error is not solved, its response counts as this multiple of the limit.
+/// If a sample is not solved in which one error is varied and all others are at their centres, its response minus the
+/// centre of the limit counts as this multiple of RelativeLimits::room().
 constexpr double kUnsolvedOverLimit = 10.0;
-constexpr double kLargestSum = 1e100;  ///< the largest sum of squares that a state may hold, so that slopes computed
-                                       ///< from it are finite
+constexpr double kLargestSum = 1e100;  ///< the largest sum of squares that a checkpoint may contain, so that slopes
+                                       ///< computed from it are finite
 
 /// The sources of scatter, which add to mean squares: the errors that vary, then the noise of the measured values of a
 /// calibration.
@@ -42,16 +43,16 @@ Sources sources_of(const Plan& plan, const MachineCalibration* calibration) {
   return {plan.factors().size(), is_noisy ? calibration->values() : 0};
 }
 
-/// The numbers that one piece of work computes at its pose. A source of scatter is an error, or a measured value whose
-/// noise counts.
+/// The numbers that one piece of work computes at its pose, for each source of scatter (Sources).
 struct AddedSquares {
-  /// [limits] Square of the response with all errors at their centres. NaN if the mechanism is not solved, and in
-  /// pieces in which the other errors are drawn.
+  /// [limits] Square of the response's deviation from the centre of the limit, with all errors at their centres. NaN if
+  /// the mechanism is not solved, in pieces in which the other errors are drawn, and for limits on a spread.
   std::vector<double> base;
   std::vector<double> added;    ///< [limits x sources] mean square that each source adds, summed over the draws
   std::vector<double> counted;  ///< [sources] number of draws that were solved
-  /// [limits x sources x kNodes] Response at the three nodes of each source, with all others at their centres. NaN if
-  /// it is not solved, and in pieces in which the other errors are drawn. Empty without a limit on a spread.
+  /// [limits x sources x kNodes] Response (SI) at the three nodes of each source, with all others at their centres. NaN
+  /// if the mechanism is not solved there, in pieces in which the other errors are drawn, and for limits that are not
+  /// on a spread. Empty without a limit on a spread.
   std::vector<double> nodes;
 
   AddedSquares() = default;
@@ -80,7 +81,7 @@ struct Pieces {
   std::size_t draws_of(std::size_t n) const { return std::min(kDrawsOfPiece, draws - first_draw(n)); }
 };
 
-/// Solves a piece of work. Owns the scratch memory of one thread.
+/// Computes AddedSquares for one piece of work after the other. Owns the scratch memory of one thread.
 class AddedSquaresEvaluator : private UnitSolver {
  public:
   AddedSquaresEvaluator(const Plan& plan, const Model& model, const RelativeLimits& limits, const Pieces& pieces,
@@ -113,13 +114,14 @@ class AddedSquaresEvaluator : private UnitSolver {
   }
 
  private:
-  /// The value of the error at this position of Plan::factors() in a sample in which another error is varied.
+  /// The value of error plan.factors()[slot] in a sample of piece n in which another source is varied.
   double other(std::size_t n, std::size_t sample, std::size_t slot) const {
     if (pieces_.alone(n)) return plan_->distributions()[slot].centre();
     return draws_[slot * pieces_.draws + pieces_.first_draw(n) + sample];
   }
 
-  /// Solves pairs of a sample of the other errors and a varied source, sample by sample, at each of the three nodes.
+  /// Solves pairs at the three nodes and adds their results to `found`. A pair is a sample of the other errors and a
+  /// source that is varied. Pairs are numbered sample by sample; `first` is the number of the first one to solve.
   void add_pairs(std::size_t n, std::size_t first, std::size_t pairs, AddedSquares& found) {
     const std::size_t count = pairs * kNodes;
     for (std::size_t v = 0; v < sources_.errors; ++v) {
@@ -141,8 +143,8 @@ class AddedSquaresEvaluator : private UnitSolver {
     for (std::size_t k = 0; k < pairs; ++k) add(n, (first + k) % sources_.size(), k, outcomes, found);
   }
 
-  /// Calibrates the machines in `values_`, if the study calibrates machines. Pairs are the same machines at each pose,
-  /// so they are calibrated only once.
+  /// If the study calibrates machines: calibrates those in `values_`. Pairs with the same numbers are the same machines
+  /// at each pose, so they are calibrated only once.
   void calibrate(std::size_t first, std::size_t pairs) {
     if (calibrator_ == nullptr) return;
     std::unique_ptr<Evaluator>& evaluator = calibrated_[first];
@@ -153,8 +155,8 @@ class AddedSquaresEvaluator : private UnitSolver {
     solve_by(evaluator.get());
   }
 
-  /// [measured values x 3 pairs] The noise of the measured values at the three nodes of each pair; 0 for a pair whose
-  /// source is an error.
+  /// [measured values x (pairs x kNodes)] The noise of the measured values (SI) at the nodes of each pair; 0 for a pair
+  /// whose source is an error.
   calibration::Matrix noise_of(std::size_t first, std::size_t pairs) const {
     const auto columns = static_cast<Eigen::Index>(pairs * kNodes);
     calibration::Matrix noise = calibration::Matrix::Zero(static_cast<Eigen::Index>(calibration_->values()), columns);
@@ -206,15 +208,16 @@ class AddedSquaresEvaluator : private UnitSolver {
   /// Evaluators of the calibrated machines of a block of pairs, by the position of its first pair.
   std::map<std::size_t, std::unique_ptr<Evaluator>> calibrated_;
   std::vector<double> draws_;     ///< [errors x draws] draws of all errors, SI
-  std::vector<double> rounding_;  ///< [limits] rounding of the response with the limit (Model::rounding)
+  std::vector<double> rounding_;  ///< [limits] Model::rounding of the limited response, SI
 };
 
-/// The sums over all pieces of work. A source of scatter is an error, or a measured value whose noise counts. A row is
-/// a limit at a pose; the poses of the first limit come first.
+/// The sums over all pieces of work, in SI units. The sources of scatter are those of Sources. A row is a limit at a
+/// pose; the poses of the first limit come first.
 struct SquareSums {
   const Pieces* pieces;
   std::size_t sources;        ///< number of sources
-  std::vector<double> base;   ///< [rows] square of the response with all errors at their centres
+  std::vector<double> base;   ///< [rows] square of the response minus its centre, with all errors at their
+                              ///< centres; 0 if the mechanism is not solved
   std::vector<double> alone;  ///< [rows x sources] mean square that each source adds if all others are at their centres
   /// [rows x sources] Mean square that each source adds if the other errors are drawn, summed over draws.
   std::vector<double> among;
@@ -282,9 +285,9 @@ struct SquareJob {
   SquareSums sums() const { return {pieces, limits, sources()}; }
 };
 
-/// Computes the rows of MeanSquares for limits on spreads over the poses, to first order in single errors: the mean
-/// square of the response minus its mean over the solved poses. An error that is drawn anew at each pose is independent
-/// between poses.
+/// Computes the rows of SquareSums for limits on spreads over the poses, to first order in single errors. The limited
+/// quantity is the response minus its mean over the solved poses. An error that is drawn anew at each pose is
+/// independent between poses.
 class SpreadRows {
  public:
   SpreadRows(SquareSums& sums, const SquareJob& job) : sums_(sums), job_(job), poses_(job.pieces.poses) {}
@@ -301,7 +304,7 @@ class SpreadRows {
  private:
   using Nodes = std::array<double, kNodes>;
 
-  /// The response at the nodes of an error, minus its mean over the poses.
+  /// The response (SI) under limit k at pose m and the nodes of source p, minus its mean over the poses.
   Nodes centred(std::size_t k, std::size_t m, std::size_t p) const {
     Nodes y{};
     for (std::size_t at = 0; at < kNodes; ++at) y[at] = node(k, m, p, at) - mean_[at];
@@ -350,7 +353,8 @@ class SpreadRows {
     }
   }
 
-  /// The mean square of the change that an error causes at its own pose, if it is drawn anew at each pose.
+  /// For an error p that is drawn anew at each pose: the mean square of the change of the response at pose m that the
+  /// draw at this pose causes.
   double own_square(std::size_t k, std::size_t m, std::size_t p) const {
     const double low = node(k, m, p, 0) - node(k, m, p, 1);
     const double high = node(k, m, p, 2) - node(k, m, p, 1);
@@ -361,8 +365,8 @@ class SpreadRows {
   const SquareJob& job_;
   std::size_t poses_;
   double rounding_ = 0.0;  ///< changes of the response up to this are rounding, SI
-  double solved_ = 0.0;    ///< number of poses at which the error is solved
-  Nodes mean_{};           ///< mean of the response over these poses, at each node
+  double solved_ = 0.0;    ///< number of poses at which the present source is solved
+  Nodes mean_{};           ///< mean of the response over these poses at each node, SI
 };
 
 MeanSquares mean_squares_of(const SquareSums& sums, const RelativeLimits& limits, const Plan& plan) {

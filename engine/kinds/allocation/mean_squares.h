@@ -26,28 +26,29 @@ inline constexpr std::size_t kDrawsAmongOthers = 64;
 
 /// Measures the mean squares at the plan's errors.
 ///
-/// An error e of mean mu and standard deviation sigma adds y(mu + sigma)^2 / 2 + y(mu - sigma)^2 / 2 - y(c)^2 to the
-/// mean square of a response y. Its centre c (Distribution::centre()) is mu, except that measured values have centre 0.
-/// The formula is exact if y is linear in e, or the norm of a linear function. Let o be this sum with all other errors
-/// at their centres, and t its average over the first `draws` draws of the other errors. If errors interact in pairs,
-/// the interactions of this error add the difference `t - o`. Each interaction belongs to two errors, so half of it is
-/// counted for each. The sum is over the errors:
+/// Let y be a response minus the centre of its limit (RelativeLimits::centre()). An error e of mean mu and standard
+/// deviation sigma adds y(mu + sigma)^2 / 2 + y(mu - sigma)^2 / 2 - y(c)^2 to the mean square of y. The centre c of the
+/// error (Distribution::centre()) is mu, but 0 for measured or given values. The formula is exact if y is linear in
+/// e, or the norm of a linear function. Let o be the value of the formula with all other errors at their centres, and t
+/// its average over the first `draws` draws of the other errors. If errors interact in pairs, the interactions of this
+/// error add the difference `t - o`. Each interaction belongs to two errors, so half of it is counted for each. Below,
+/// y(c) is y with all errors at their centres, and the sum is over the errors:
 ///
 ///     value = y(c)^2 + sum of (o + t) / 2,     slope = t / sigma^2.
 ///
 /// If errors do not interact, or if draws = 0, t = o, so the value has no sampling noise. For a limit on a spread, y is
-/// the response minus its mean over the poses, and t is always o. The response of a sample that is not solved counts as
-/// ten times the limit if the other errors are at their centres; the sample is left out if they are drawn. The result
+/// the response minus its mean over the poses, and t is always o. If a sample is not solved, its y counts as ten times
+/// MeanSquares::room if the other errors are at their centres; the sample is left out if they are drawn. The result
 /// has the same bits for any number of threads and on all ranks. None if the run was stopped.
 ///
-/// With a calibration, y is the response that remains after a calibration without measurement noise, and draws must be
-/// 0. The noise of a measured value counts in `value` like an error with the same standard deviation, but no slope is
-/// computed for it.
+/// With a calibration, y is what remains of the response after a calibration without measurement noise, and `draws`
+/// must be 0. The noise of each measured value then adds to MeanSquares::value as an error with the same standard
+/// deviation would, but MeanSquares::slope has no entry for it.
 std::optional<MeanSquares> mean_squares(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
                                         std::size_t draws, const RunOptions& options,
                                         const MachineCalibration* calibration = nullptr);
 
-/// The number of solves that mean_squares() makes.
+/// The number of solves that mean_squares() makes, without those for the measurement noise of a calibration.
 std::uint64_t mean_square_solves(const Plan& plan, std::size_t draws);
 
 }  // namespace poesy

@@ -21,7 +21,7 @@ bool varies(const Study& study, FactorIndex factor) {
   return std::ranges::find(study.analysis.factors, factor) != study.analysis.factors.end();
 }
 
-/// The varied errors of this dimension.
+/// The varied errors of this dimension. Throws InputError at the value if there are none.
 PartMembers members_of(const StudyValue& value, Dimension dimension, const Study& study) {
   PartMembers members;
   for (const FactorIndex factor : study.analysis.factors) {
@@ -33,8 +33,8 @@ PartMembers members_of(const StudyValue& value, Dimension dimension, const Study
              "leave this part out");
 }
 
-/// The errors that a word stands for: "linear", "angular" or "relative" stands for all varied errors of that dimension;
-/// any other word is the name of a factor set.
+/// The errors that a word names: "linear", "angular" and "relative" name all varied errors of that dimension, unless a
+/// factor set has this name. Any other word is the name of a factor set.
 PartMembers members_by_word(const StudyValue& value, const Study& study) {
   const ModelDescription& model = study.model();
   for (const Dimension dimension : kErrorDimensions) {
@@ -84,7 +84,8 @@ bool is_digit(const std::string& text, std::size_t at) {
   return at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) != 0;
 }
 
-/// The error of the limb `limb` whose name differs from that of `factor` only in the number of the limb.
+/// The error of limb `limb` that corresponds to `factor`: it has the same frame and dimension, and its name differs
+/// only in the number of the limb. None if there is no such error.
 std::optional<FactorIndex> counterpart(const Factor& factor, std::size_t limb, const ModelDescription& model) {
   const std::string number = std::to_string(factor.limb);
   for (std::size_t at = factor.name.find(number); at != std::string::npos; at = factor.name.find(number, at + 1)) {

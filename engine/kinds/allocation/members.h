@@ -12,16 +12,18 @@ using PartMembers = std::vector<FactorIndex>;  ///< The errors of a part, which 
 
 using Limbs = std::vector<std::size_t>;  ///< Numbers of limbs, counted from 1 as in study files.
 
-/// Reads a list of limbs: at least two, none twice. Throws InputError at a value that is not a limb of the model.
+/// Reads a list of at least two different limbs that have errors. Throws InputError at the value if the list is not of
+/// this form.
 Limbs read_limbs(const StudyValue& value, const ModelDescription& model);
 
-/// Throws InputError at the value if an error's tolerance cannot be chosen: if the error is measured, correlated, has a
-/// stated mean, or is drawn anew at each pose.
+/// Throws InputError at the value if the tolerance of one of these errors cannot be chosen: if the error is measured or
+/// correlated, has a mean that is not zero, is drawn together with the other errors of its feature, or is drawn anew at
+/// each pose.
 void check_distributions(const StudyValue& value, const PartMembers& members, const Study& study);
 
-/// The errors of each part of a block. A block is one part. With the key `each`, every error is a part, but
-/// corresponding errors of identical limbs share one. No error is in two parts of the block. Throws InputError for an
-/// error that cannot be in a part: unknown, fixed, measured or correlated.
+/// The errors of each part of a block. Without the key `each`, a block is one part. With it, every error is a part, but
+/// corresponding errors of identical limbs form one part. No error is in two parts of the block. Throws InputError for
+/// an error that does not exist, that the study does not vary, or that check_distributions() refuses.
 std::vector<PartMembers> read_members(const StudySection& block, const Study& study);
 
 /// Whether the block has the key `each`, with which every error is a part of its own.

@@ -8,9 +8,9 @@
 namespace poesy {
 namespace {
 
-/// Bounds of the window's half-width. Machines outside the widest window say nothing about the limit. The narrowest
-/// window is used if the loads of the wanted machines (largest ratios of a response to its limit) are nearly equal;
-/// more machines than wanted are then in the window.
+/// The largest and the smallest half-width of the window. Machines outside the widest window are too far from the limit
+/// to predict rejects. If the loads of all wanted machines are nearer to 1 than the smallest half-width, the window
+/// contains more machines than wanted.
 constexpr double kWidest = 0.2;
 constexpr double kNarrowest = 0.02;
 

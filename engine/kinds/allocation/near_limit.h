@@ -13,9 +13,9 @@ namespace poesy {
 /// fraction rises from 0 to 1 in a window around the load 1. See theory.md, "A coarser part".
 class NearLimit {
  public:
-  /// Chooses about `count` machines: those in a window around the load 1. The half-width of the window is the distance
-  /// that contains the `count` nearest loads, but at least 0.02 and at most 0.2. machines: [listed] ascending numbers,
-  /// including all rejects; loads: [listed].
+  /// Chooses about `count` machines: those in a window around the load 1. The window is just wide enough for the
+  /// `count` loads nearest to 1, but its half-width is at least 0.02 and at most 0.2. machines: [listed] ascending
+  /// numbers, including all rejects; loads: [listed].
   NearLimit(std::span<const std::uint32_t> machines, std::span<const double> loads, std::size_t count);
 
   /// The numbers of the chosen machines, ascending.

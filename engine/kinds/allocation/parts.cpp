@@ -41,7 +41,7 @@ std::pair<double, double> read_bounds(const StudyValue& value, Dimension dimensi
                "write the smaller bound first");
 }
 
-/// The block of a part, and what its keys mean.
+/// The block of a part, and the data that are needed to read its keys.
 struct PartBlock {
   const StudySection& block;
   Dimension dimension;  ///< dimension of the part's tolerance
@@ -67,12 +67,12 @@ std::string size_text(double size) { return readable_text({size, Dimension::leng
 
 /// Whether two sizes are the same except for rounding.
 bool is_same_size(double a, double b) {
-  constexpr double kSame = 1e-9;  // as a share
+  constexpr double kSame = 1e-9;  // relative difference
   return std::abs(a - b) <= kSame * b;
 }
 
-/// A distance of the drawing whose error the part has, and whose size is known. Throws InputError if the part has two
-/// such distances of different sizes. Null if it has none.
+/// A distance of the drawing that has a known size and whose error is in the part. Null if there is none. Throws
+/// InputError if there are two with different sizes.
 const Feature* sized_distance(const StudyValue& grades, const AllocatedPart& part, const ModelDescription& model) {
   const Feature* found = nullptr;
   for (const Feature& feature : model.features) {
@@ -88,7 +88,8 @@ const Feature* sized_distance(const StudyValue& grades, const AllocatedPart& par
   return found;
 }
 
-/// Reads the size of the part, which its distance on the drawing may state.
+/// Reads the nominal size of a part from the key `nominal_size`, or takes it from the distance of the drawing that is
+/// in the part. Throws InputError if both are missing or differ, or if ISO 286-1 has no grades for this size.
 void read_nominal_size(const StudyValue& grades, const PartBlock& of, AllocatedPart& part) {
   const Feature* const own = sized_distance(grades, part, of.model);
   const auto size = of.block.find("nominal_size");
@@ -166,7 +167,7 @@ constexpr std::array<ChoiceKey, 5> kChoiceKeys{{{"bounds", PartChoice::range, re
                                                 {"processes", PartChoice::processes, read_processes},
                                                 {"tolerance", PartChoice::fixed, read_fixed}}};
 
-/// Throws InputError if no value to which tolerances are rounded is within these bounds.
+/// Throws InputError if none of the values to which tolerances are rounded is between lo and hi (SI).
 void check_rounding(const StudyValue& value, double lo, double hi, const Rounding& round) {
   if (std::isinf(hi) || round.up(lo) <= round.down(hi)) return;
   value.fail("is set, but no such value is within the bounds of the tolerance", "take a finer step, or wider bounds");
@@ -259,8 +260,8 @@ double sigmas_of(const StudySection& block, std::optional<double> usual, const s
                    "say how many standard deviations a tolerance is: sigmas = 3 or cpk = 1");
 }
 
-/// Throws InputError if another part has this name. In a block with `each`, the name of a part is that of its first
-/// error.
+/// Checks the name of a part of a block with `each`, which is the name of its first error. Throws InputError if the
+/// block has the key `name`, or if another part has this name.
 void check_each_name(const StudySection& block, std::span<const std::string_view> taken, const std::string& name) {
   if (const auto value = block.find("name")) {
     static_cast<void>(value->text());

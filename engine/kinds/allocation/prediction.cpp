@@ -15,22 +15,22 @@
 namespace poesy {
 namespace {
 
-/// The cost law of a part: its own, or that of its process at this point.
+/// The cost law of a part. If the part has processes, the law of the process that `point` chooses.
 CostLaw law_of(const ToleranceProgramme& programme, const TolerancePoint& point, std::size_t part) {
   const AllocatedPart& stated = programme.parts()[part];
   if (stated.choice != AllocatedPart::Choice::processes) return stated.cost.cost_law();
   return programme.processes()[part][point.process[part]].cost;
 }
 
-/// The tolerance of a part in its display unit, with "±" or the key of its zone as name.
+/// The tolerance of a part in its display unit. Its name is "±" or, for a zone, the key of the zone.
 WhatIfSize size_of(const AllocationResult& found, std::size_t part) {
   const Unit& unit = display_unit(dimension_of(found.part_unit(part)));
   const bool is_zone = found.has_zones() && !found.zone_key(part).empty();
   return {is_zone ? found.zone_key(part) : "\u00b1", found.tolerance(part) / unit.si, std::string(unit.name)};
 }
 
-/// Adds the errors of a part to a group of errors that one slider of the page scales. Adds to the group's costs the
-/// cost of the part's tolerance at each factor of the slider.
+/// Adds a part to `errors`, a group of errors that one slider of the page scales: its errors, its name and tolerance,
+/// and its cost at each factor of the slider.
 void add_part(const AllocationResult& found, const ToleranceProgramme& programme, const TolerancePoint& point,
               std::size_t part, SizedErrors& errors) {
   for (const ErrorFactor& one : programme.weights(point, part).errors) {

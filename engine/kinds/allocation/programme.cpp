@@ -16,14 +16,14 @@ namespace poesy {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// The largest tolerance, as a share of the dimension of the mechanism that the error changes. At a quarter, four
-/// standard deviations of a normal error equal the dimension.
+/// The upper bound on a tolerance for which the study states none, as a share of the dimension of the mechanism that
+/// the error changes (Model::error_bound).
 constexpr double kShareOfPart = 0.25;
 
-/// The standard deviation (m or rad) that is used instead of 0. No solve can distinguish it from 0.
+/// The standard deviation (SI) that is used instead of 0. It is so small that no solve can distinguish it from 0.
 constexpr double kPerfect = 1e-18;
 
-/// The largest tolerance that is physically possible, whatever the study states.
+/// The upper bound (SI) on the tolerance of a part for which the study states none.
 double largest_of(const AllocatedPart& part, const Model& model) {
   double largest = kInfinity;
   for (const FactorIndex factor : part.factors) {
@@ -64,8 +64,8 @@ std::vector<Process> processes_of(const AllocatedPart& part, const Model& model)
   return {bounded(law, part.lo, part.hi)};
 }
 
-/// A distribution of the same shape with this standard deviation and this shift of the mean, SI. Precondition: the
-/// shape is symmetric.
+/// A distribution of the same shape. sigma: its standard deviation about the mean, SI. shift: its offset of the mean,
+/// SI. Precondition: the shape is symmetric.
 Distribution error_of(const Distribution& shape, double sigma, double shift) {
   const double without_shift =
       std::sqrt(shape.standard_deviation() * shape.standard_deviation() - shape.shift() * shape.shift());
@@ -109,7 +109,8 @@ bool has_one_spread(const AllocatedPart& part, const ModelDescription& model) {
   return !part.zone || feature_of(part, model).kind == FeatureKind::distance;
 }
 
-/// A zone of orientation counts as not needed from this share of the width that the zone of location allows.
+/// The drawing does not need a zone of orientation whose width is at least this share of the largest width that the
+/// zone of location allows.
 constexpr double kVoid = 1.0 - 1e-9;
 
 /// A tolerance and the position of a process that can keep it.
@@ -136,8 +137,8 @@ Held held_below(const std::vector<Process>& processes, double most) {
   return {lowest->lo, static_cast<std::size_t>(lowest - processes.begin())};
 }
 
-/// A coarser tolerance: `factor` times as large, limited by its process, or else the next larger single value. None if
-/// there is neither.
+/// A tolerance that is coarser than `from`: `factor` times as large, but at most the largest of its process. If the
+/// process allows no larger one, the next larger tolerance of a process with a single value. None if there is none.
 std::optional<Held> larger_than(const std::vector<Process>& list, const Held& from, double factor) {
   const Process& now = list[from.process];
   if (now.hi > from.tolerance) return Held{std::min(now.hi, factor * from.tolerance), from.process};
@@ -150,7 +151,7 @@ std::optional<Held> larger_than(const std::vector<Process>& list, const Held& fr
   return Held{list[*above].lo, *above};
 }
 
-/// If the cost is the same at every tolerance, restricts a process to its finest tolerance.
+/// The process, restricted to its finest tolerance if all its tolerances cost the same.
 Process finest_if_constant(Process process) {
   if (process.cost.is_constant()) process.hi = process.lo;
   return process;
@@ -201,7 +202,8 @@ void ToleranceProgramme::keep_allowed(ToleranceLimits& limits) const {
   }
 }
 
-/// The mean squares of the errors of paired zones at these tolerances [parts], SI squared.
+/// The mean square (SI squared) of each error of a pair of zones at these tolerances [parts]. The member `factor`
+/// contains the mean square.
 std::vector<ErrorFactor> ToleranceProgramme::squares_of_pair(const Within& pair,
                                                              std::span<const double> tolerance) const {
   std::vector<ErrorFactor> squares;
@@ -281,7 +283,7 @@ std::string ToleranceProgramme::chosen_name(std::size_t part, std::size_t proces
   return name + (name.empty() ? "" : ", ") + rounding_words(*one.round, dimension_of(one, study_.model()));
 }
 
-/// The size of the finest zone of this kind that the drawing gives to the features of a part.
+/// For a part that is a zone: the smallest size (m) that the drawing states for this zone at the features of the part.
 double ToleranceProgramme::usual_of_zone(const AllocatedPart& part) const {
   const bool turned = is_orientation(part, study_.model());
   double usual = kInfinity;
@@ -445,8 +447,8 @@ ChoiceOfTolerances ToleranceProgramme::least(const ToleranceLimits& limits, cons
   const LeastCost& found = std::get<LeastCost>(outcome);
   ChosenTolerances chosen{{found.best.tolerance, {}, 0.0}, found.lower_bound, found.multiplier};
   if (std::ranges::all_of(chosen.multiplier, [](double one) { return one == 0.0; })) {
-    // If all parts have single values, all multipliers are 0. Then the multipliers of the relaxation are used, in which
-    // processes may be mixed.
+    // If every part can only choose from single values, all multipliers are 0. The multipliers of the relaxed problem,
+    // in which processes may be mixed, are used instead.
     chosen.multiplier = found.relaxed;
   }
   for (std::size_t i = 0; i < size(); ++i) chosen.process.push_back(kept[i][found.best.process[i]]);
@@ -516,7 +518,7 @@ Study ToleranceProgramme::at(std::span<const double> tolerance) const {
     Distribution& error = study.errors.by_factor[factor.value];
     error = error_of(error, std::max(sigma, kPerfect), shift);
   };
-  std::vector<double> squares(study_.analysis.factors.size(), 0.0);  // mean squares of errors in zones
+  std::vector<double> squares(study_.analysis.factors.size(), 0.0);  // mean squares of errors in zones, SI squared
   for (std::size_t i = 0; i < size(); ++i) {
     const AllocatedPart& part = parts()[i];
     if (has_one_spread(part, study_.model())) {

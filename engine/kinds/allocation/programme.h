@@ -22,14 +22,15 @@ namespace poesy {
 /// Tolerances of all parts, and their cost.
 struct TolerancePoint {
   std::vector<double> tolerance;     ///< [parts] tolerance of each part, SI
-  std::vector<std::size_t> process;  ///< [parts] position of the process among those of the part
+  std::vector<std::size_t> process;  ///< [parts] position of the chosen process among those of the part
   double cost = 0.0;                 ///< total cost; NaN if no part has a cost
 };
 
 /// The tolerances that the optimisation (ToleranceProgramme::choose) chose under the limits.
 struct ChosenTolerances : TolerancePoint {
-  double lower_bound = 0.0;        ///< lower bound on the least cost; NaN if the aim has no costs
-  std::vector<double> multiplier;  ///< [limits] cost saved per unit of additional room; empty if the aim has no costs
+  double lower_bound = 0.0;        ///< lower bound on the least cost; NaN if the aim is not Aim::least_cost
+  std::vector<double> multiplier;  ///< [rows of ToleranceLimits] cost saved per unit of additional room; empty if the
+                                   ///< aim is not Aim::least_cost
 };
 
 /// The region around the tolerances of a linearisation in which the optimisation may choose tolerances.
@@ -55,15 +56,15 @@ class ToleranceProgramme {
   const std::vector<AllocatedPart>& parts() const;     ///< The parts as the study states them.
   /// [parts] The processes of each part. Each value, grade or range from which the part may choose is a process.
   const std::vector<std::vector<Process>>& processes() const { return processes_; }
-  /// The positions, among the study's errors, of the errors that belong to a part. If a feature also has a zone of
-  /// orientation, the errors of its zone of location depend on both.
+  /// The positions, among the errors that the study varies, of the errors of a part. If a feature has a zone of
+  /// location and a zone of orientation, the errors of the zone of location depend on the tolerances of both.
   std::span<const std::size_t> errors(std::size_t part) const { return errors_[part]; }
   const std::vector<Within>& pairs() const { return pairs_; }  ///< Zones of orientation within zones of location.
   /// Whether a part is a zone of orientation that is as wide as the zone of location allows, so that the drawing does
   /// not need it.
   bool is_void(const TolerancePoint& point, std::size_t part) const;
-  /// The factors on the errors if only this part's tolerance is multiplied by |factor|. A negative factor also mirrors
-  /// the errors. Errors of paired zones whose standard deviation is 0 are left out.
+  /// The factors by which a part's errors change if only the tolerance of this part is multiplied by |factor|. A
+  /// negative `factor` also mirrors the errors. For a pair of zones, errors of standard deviation 0 are left out.
   Variation variation(const TolerancePoint& point, std::size_t part, double factor) const;
   /// How the effect of a part on a mean square is divided among its errors.
   struct Weights {
@@ -71,40 +72,42 @@ class ToleranceProgramme {
     std::vector<std::size_t> parts;   ///< the part itself, or both parts of its pair of zones
   };
   Weights weights(const TolerancePoint& point, std::size_t part) const;  ///< The weights of a part's errors.
-  /// The logarithmic derivative of each error's standard deviation with respect to this part's tolerance; 1 if the part
+  /// The derivative of ln(standard deviation of each error) with respect to ln(tolerance of this part); 1 if the part
   /// is in no pair of zones.
   std::vector<ErrorFactor> growth(const TolerancePoint& point, std::size_t part) const;
-  /// The name of a process or grade; empty if the part has neither.
+  /// The name of this process or grade of a part, and in words the values to which its tolerance is rounded down. Empty
+  /// if the part has none of these.
   std::string chosen_name(std::size_t part, std::size_t process) const;
 
-  /// [parts] The tolerances with which errors have the sizes in [errors] of the study; for zones, the tolerances of the
-  /// drawing. All are moved within the bounds of the parts.
+  /// [parts] The tolerances that follow from the sizes of errors in [errors] of the study, from the smallest size in
+  /// each part; for zones, the tolerances of the drawing. All are moved within the bounds of the parts.
   std::vector<double> usual() const;
-  /// For each part, its largest possible tolerance up to the one given [parts]; if there is none, its lowest.
+  /// The point at which each part has its largest possible tolerance that is not above `tolerance` [parts]; if there is
+  /// none, its lowest tolerance.
   TolerancePoint at_most(std::span<const double> tolerance) const;
   TolerancePoint lowest() const;  ///< The lowest tolerances.
-  /// The point with each tolerance rounded down as the study asks for its part. No standard deviation grows. A finer
-  /// orientation would leave more of the zone of location to the middle, so the location is made finer as well before
-  /// it is rounded.
+  /// The point with each tolerance rounded down as the study asks for its part. No standard deviation grows: a finer
+  /// zone of orientation would leave more of the zone of location to the middle of the feature, so the zone of location
+  /// is made finer as well before it is rounded.
   TolerancePoint rounded(const TolerancePoint& point) const;
-  /// The point with one part coarser: its tolerance multiplied by `factor`, or its next larger value. None if the
-  /// process allows neither, or if the tolerance is 0. A zone of orientation may also be made so wide that the drawing
-  /// does not need it.
+  /// The point with one part coarser: its tolerance multiplied by `factor`, or its next larger value. A zone of
+  /// orientation may also be made so wide that the drawing does not need it. None if the part can have no larger
+  /// tolerance, if its tolerance is 0, or if the drawing does not need it at `point`.
   std::optional<TolerancePoint> coarser(const TolerancePoint& point, std::size_t part, double factor) const;
   /// Whether the tolerance of a part is at a bound.
   AtBound at_bound(const TolerancePoint& point, std::size_t part) const;
   /// The cost of a part; 0 if it has no cost or the drawing does not need it.
   double cost(const TolerancePoint& point, std::size_t part) const;
-  /// Reduces each zone of orientation that is too wide to the widest that its zone of location allows.
+  /// Narrows each zone of orientation in `tolerance` [parts] that is wider than its zone of location allows.
   void keep_within(std::span<double> tolerance) const;
-  /// Sets each orientation that the drawing does not need at `point` to the widest that the locations in `tolerance`
-  /// [parts] allow.
+  /// For each zone of orientation that the drawing does not need at `point`: sets its width in `tolerance` [parts] to
+  /// the largest that its zone of location allows.
   void keep_void(const TolerancePoint& point, std::span<double> tolerance) const;
   /// Raises negative effects of zones of orientation on limits to the smallest value that the optimisation accepts
   /// (Within).
   void keep_allowed(ToleranceLimits& limits) const;
-  /// The limits on the sums of mean squares that parts cause: room = (share x MeanSquares::room x wider)^2 minus the
-  /// effect of fixed errors. at: [parts] tolerances at which the mean squares were measured.
+  /// The limits on the mean squares that all parts together cause: room = (share x MeanSquares::room x wider)^2 minus
+  /// the mean square that no part causes, SI squared. at: [parts] tolerances at which the mean squares were measured.
   ToleranceLimits limits(const MeanSquares& squares, std::span<const double> at, double share,
                          double wider = 1.0) const;
   /// Solves the optimisation problem of the study's aim under these limits.

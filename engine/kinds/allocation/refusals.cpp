@@ -18,7 +18,7 @@ namespace poesy::allocation {
 
 namespace {
 
-/// A limit at a pose, for a message: "gap at pose 12".
+/// The response and the pose of a row (a limit at a pose), for a message: "gap at pose 12".
 std::string row_text(const StudyRun& run, std::size_t row) {
   const std::size_t poses = run.poses.size();
   const ResponseLimit& limit = run.study.analysis.limits[row / poses];
@@ -38,7 +38,7 @@ std::string finer_parts(const SearchProblem& problem) {
   return std::string("lower the bounds of parts") + (has_steps ? ", or round to finer steps" : "");
 }
 
-/// Refuses a study if too many machines are rejected although all their parts are perfect.
+/// Refuses a study if too many machines are rejected even with perfect parts, because of errors that are in no part.
 void refuse_others_alone(const SearchProblem& problem) {
   constexpr std::size_t kMostNamed = 5;
   std::vector<std::string> others;
@@ -84,7 +84,7 @@ void refuse_infeasible(const SearchProblem& problem, const Infeasible& infeasibl
   const ResponseLimit& limit = study.analysis.limits[k];
   const Response& response = study.model().responses[limit.response];
   const double room = stated_limits(problem).room(k, PoseIndex(infeasible.limit % poses.size()));
-  const double fixed = room * room - infeasible.room;  // effect of errors that are in no part
+  const double fixed = room * room - infeasible.room;  // mean square that no part causes
   const auto text = [&](double square) {
     return readable_text({std::sqrt(std::max(0.0, square)), response.dimension}, 4);
   };

@@ -21,8 +21,8 @@ class PerfectSolver : private UnitSolver {
     calibrated_ = calibration->evaluator(MachineCalibrator(*calibration).without_noise(all_errors(drawn(1))));
     solve_by(calibrated_.get());
   }
-  /// [responses] The responses at a pose. Zero if the mechanism is not solved at this pose, because then no machine is
-  /// solved there either.
+  /// [responses] The responses at a pose, SI. All are 0 if the mechanism is not solved at this pose; machines are then
+  /// not solved there either.
   std::vector<double> operator()(PoseIndex pose) {
     const UnitOutcomes outcomes = UnitSolver::solve(pose, plan_->factors(), 1, 0.0);
     if (!counts(outcomes.status.front(), plan_->not_converged())) return std::vector<double>(responses_, 0.0);

@@ -31,14 +31,15 @@ class RelativeLimits {
   std::size_t size() const { return limits_.size(); }  ///< The number of limits.
   /// Position of the response that limit k limits.
   std::size_t response(std::size_t k) const { return limits_[k].response; }
-  /// The value from which limit k measures distances at a pose, SI.
+  /// The centre of limit k at a pose, SI. 0 for a limit on a spread, whose centre differs from machine to machine.
   double centre(std::size_t k, PoseIndex pose) const { return centre_(k, pose.value); }
   /// The distance from the centre to the nearer end of the limit, SI; zero or negative if the centre is not within the
   /// limit. For a limit on a spread, half the limit: if no value is farther than this from the mean, the spread keeps
   /// its limit.
   double room(std::size_t k, PoseIndex pose) const;
-  /// The load of a value: its distance from the centre divided by the distance of the end on the same side. It is at
-  /// most 1 exactly if the limit holds, in spite of rounding. Preconditions: room() > 0; the limit is not on a spread.
+  /// The load of a value (SI): its distance from the centre, divided by the distance from the centre to the end of the
+  /// limit on the same side. The load is at most 1 if and only if the limit holds, in spite of rounding. Preconditions:
+  /// room() > 0; the limit is not on a spread.
   double load(std::size_t k, PoseIndex pose, double value) const;
 
   bool is_spread(std::size_t k) const { return limits_[k].allowed.is_spread(); }  ///< Whether a spread is limited.
@@ -48,8 +49,8 @@ class RelativeLimits {
   bool is_over_poses(std::size_t k) const { return limits_[k].allowed.is_over_poses(); }
   /// Whether some limit is judged from the values at all poses together.
   bool any_over_poses() const { return poesy::any_over_poses(limits_); }
-  /// The load of a machine under a limit over poses: at most 1 exactly if the limit holds. at_poses: [poses] the values
-  /// for a spread, otherwise load() at each pose; the function reorders them.
+  /// The load of a machine under a limit with is_over_poses(): at most 1 if and only if the limit holds. at_poses:
+  /// [poses] the responses (SI) for a limit on a spread, otherwise load() at each pose; the function reorders them.
   double load_over_poses(std::size_t k, std::span<double> at_poses) const;
 
  private:

@@ -14,12 +14,12 @@
 namespace poesy::allocation {
 namespace {
 
-/// A small step of one part to a coarser tolerance, from which the effect of its next tolerance is extrapolated.
+/// A part whose tolerance becomes coarser by a small step. From this step, the effect of the part's next possible
+/// tolerance is extrapolated.
 struct CoarserPart {
   std::size_t part;
   double step;   ///< factor by which the step multiplies the tolerance T of the part
-  double steps;  ///< increase of T^2 up to the next tolerance that the part can have, divided by the increase of T^2 in
-                 ///< one step
+  double steps;  ///< increase of T^2 up to the next possible tolerance, divided by the increase of T^2 in one step
 };
 
 std::vector<double> try_varied(const SearchProblem& problem, const ToleranceDesign& design, const NearLimit& near,
@@ -31,15 +31,15 @@ std::vector<double> try_varied(const SearchProblem& problem, const ToleranceDesi
                                        variations, run.options, calibration.get()));
 }
 
-/// The predicted share of good machines if the part gets its next tolerance. added: rejects that one step of the part
-/// adds.
+/// The predicted share of good machines if the part gets its next possible tolerance. added: number of rejects that one
+/// step adds.
 double yield_with(const ToleranceDesign& design, const CoarserPart& coarser, double added) {
   const double rejects = static_cast<double>(rejects_of(design.screened.load)) + coarser.steps * added;
   return std::clamp(1.0 - rejects / static_cast<double>(design.load.size()), 0.0, 1.0);
 }
 
-/// Predicts the yield with each of these parts coarser alone, for parts that hardly change the loads of machines. Uses
-/// more machines, and mirrored errors.
+/// For parts that hardly change the loads of machines: predicts the yield if only one of these parts is coarser, and
+/// writes it into `yield` [all parts]. Uses more machines than probe(), and machines with mirrored errors.
 void probe_small(const SearchProblem& problem, const ToleranceDesign& design, std::span<const CoarserPart> parts,
                  std::vector<double>& yield) {
   const NearLimit many(design.screened.numbers, design.screened.load, kProbesOfSmall);
@@ -56,9 +56,10 @@ void probe_small(const SearchProblem& problem, const ToleranceDesign& design, st
   }
 }
 
-/// Predicts the yield for each of these parts if only its tolerance is larger, and sets it in the list `yield` [parts];
-/// NaN if a part cannot be coarser. If the next value of a part is far away, only few machines are near enough to the
-/// limit to show its effect. Then the rejects of a small step are extrapolated in proportion to T^2.
+/// Predicts the yield for each of these parts if only this part is coarser. Returns the list `yield` [all parts] with
+/// the predictions written into it; NaN if a part cannot be coarser. If the next possible tolerance of a part is much
+/// larger, too few machines are near enough to the limit to show its effect. Then the added rejects of a small step are
+/// extrapolated in proportion to the increase of T^2.
 std::vector<double> probe(const SearchProblem& problem, const ToleranceDesign& design,
                           std::span<const std::size_t> parts, std::vector<double> yield) {
   const NearLimit few(design.screened.numbers, design.screened.load, kProbes);
@@ -97,8 +98,8 @@ Probed probe_all(const SearchProblem& problem, ToleranceDesign design) {
   return {std::move(design), std::move(yield)};
 }
 
-/// Selects from these parts those of which each alone could be coarser at a lower cost, without more rejects than the
-/// design may have. If all together would add too many rejects, selects only the parts with the least effect.
+/// Selects the parts that could be made coarser, one alone, at a lower cost and without more rejects than the design
+/// may have. If all of them together would add too many rejects, selects only those that add the fewest.
 std::vector<std::size_t> idle_parts(const SearchProblem& problem, const Probed& probed,
                                     std::span<const std::size_t> parts) {
   const auto& [design, coarser_yield] = probed;

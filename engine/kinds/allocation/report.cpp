@@ -25,8 +25,8 @@ SolveTally tally(const StoredResult& result) {
   return {"", {"all errors"}, result.poses.size(), {solves.begin(), solves.end()}};
 }
 
-/// The responses that figures show at each pose: those with a limit, each with two values, the use of its limit and the
-/// multiplier.
+/// The responses that figures show at each pose: those with a limit. Two values are shown for each: the use of the
+/// limit and its multiplier.
 ShownCells cells(const StoredResult& result) {
   return shown_cells(result, 2, limited_responses(allocation_of(result)));
 }
@@ -57,7 +57,7 @@ std::pair<std::vector<std::string>, std::vector<double>> shown_tolerances(const 
   return shown;
 }
 
-/// Bars that show cost, share of the mean square, and tolerance of each part.
+/// Bars that show the cost (if the study has costs), the share of the mean square, and the tolerance of each part.
 Bars part_bars(const Result& found, ArrayPool& pool) {
   const auto [units, tolerances] = shown_tolerances(found);
   Bars bars{{}, {}, found.part_names};
@@ -194,7 +194,8 @@ std::string tightest_text(const StoredResult& result) {
                      number_text(found.saving(*most), 3), number_text(found.total_cost));
 }
 
-/// Sentences on the errors in no part, on which the certificate depends as well; empty if there are none.
+/// Sentences that name the errors in no part, because the certificate is valid only for their sizes. Empty if there are
+/// no such errors.
 std::string keep_text(const StoredResult& result) {
   const std::string text = in_no_part_text(errors_in_no_part(result), result.factors.size());
   return text.empty() ? text : text + ". The certificate holds only with these sizes. ";
@@ -226,8 +227,8 @@ Answer answer(const StoredResult& result) {
   return lines;
 }
 
-/// The tolerances with which the fresh machines were drawn, as a text for each unit: "34 parts of +-0.01 to +-0.05 mm,
-/// 3 standard deviations each".
+/// The tolerances with which the fresh machines were drawn, as a text for lengths and one for angles: "34 parts with
+/// tolerances of 0.01 to 0.05 mm, standard deviations of 0.003 to 0.015 mm".
 std::vector<std::string> tolerance_sizes(const Result& found) {
   std::vector<std::string> sizes;
   for (const std::string_view unit : {"m", "rad"}) {
@@ -290,8 +291,8 @@ ErrorShares error_shares(const StoredResult& result) {
   return shares;
 }
 
-/// The tolerances of a result, part by part, for comparison with another result; costs are compared if both results
-/// have them.
+/// The tolerances of a result, part by part, for comparison with the result `other`. Costs are included if both results
+/// have costs.
 Comparable comparable(const StoredResult& result, const StoredResult& other) {
   const Result& found = allocation_of(result);
   Comparable all{"tolerances", {"all limits"}, "part", found.part_names};
@@ -309,9 +310,8 @@ Comparable comparable(const StoredResult& result, const StoredResult& other) {
   return all;
 }
 
-/// The number by which it is judged which of two results is better: the cost. The yield is not used for this, because
-/// both results certify it. The cost has no interval, because a result does not tell what other machines of the search
-/// would have given.
+/// The number that decides which of two results is better: the cost. It has no confidence interval, because a result
+/// does not show which cost the search would have found with other machines.
 std::vector<Merit> merits(const StoredResult& result, std::string_view) {
   const Result& found = allocation_of(result);
   if (!has_costs(found)) return {};

@@ -21,8 +21,8 @@
 
 namespace poesy {
 
-/// The cost of a tolerance T in SI units, as a law with parameters. The stated numbers are kept so that the study can
-/// be written again digit by digit.
+/// The cost of a tolerance T (SI), as a law with parameters. The parameters are kept, with b converted to SI, so that
+/// the study can be written again with exactly the same cost.
 struct StatedCost {
   /// The form of the cost as a function of T.
   enum class Law {
@@ -33,10 +33,10 @@ struct StatedCost {
   };
   Law law = Law::none;  ///< the law of the cost
   double a = 0.0;       ///< the term of the cost that does not depend on T
-  double b = 0.0;       ///< factor of the term that depends on T, >= 0; its unit is cost x (m or rad)^k, with k = 1 for
-                        ///< reciprocal, and a cost for exponential
+  double b = 0.0;       ///< factor of the term that depends on T, >= 0; in units of cost for exponential, otherwise in
+                        ///< cost x (SI unit of T)^k, with k = 1 for reciprocal
   double k = 1.0;       ///< exponent of reciprocal_power, > 0
-  double tau = 0.0;     ///< decay constant of exponential, > 0, m or rad
+  double tau = 0.0;     ///< decay constant of exponential, > 0, in the SI unit of T
 
   CostLaw cost_law() const;                            ///< The cost as a function of T.
   bool operator==(const StatedCost&) const = default;  ///< Same law and numbers.
@@ -50,7 +50,8 @@ struct StatedProcess {
   double hi = std::numeric_limits<double>::infinity();  ///< largest tolerance, SI
 };
 
-/// A tolerance zone of a drawing as a part. T is the diameter or width of the zone, or +-T of a distance.
+/// A tolerance zone of a drawing as a part. Its tolerance T is the diameter or width of the zone. A distance with the
+/// tolerance +-T also counts as a zone.
 struct PartZone {
   std::string key;  ///< key of the zone in files: "position"
   /// Positions of the zone's features among those of the model: one in each limb that shares the tolerance.
@@ -69,13 +70,15 @@ struct AllocatedPart {
   };
   std::string name;                  ///< name of the part in tables and files
   std::vector<FactorIndex> factors;  ///< its errors, at least one, all of one dimension; an error is in one part only
-  double sigmas = 3.0;  ///< standard deviations in a tolerance: T = shift T + sigmas x standard deviation; for a zone,
-                        ///< T / 2 = `sigmas` x standard deviation
-  double shift = 0.0;   ///< offset of the mean as a share of T, in either direction; 0 <= shift < 1
+  /// Number of standard deviations in the tolerance: T = shift x T + sigmas x standard deviation of an error. For a
+  /// zone that is not a distance, T / 2 = sigmas x standard deviation of a coordinate of an extreme point (end of an
+  /// axis, corner of a plane).
+  double sigmas = 3.0;
+  double shift = 0.0;             ///< offset of the mean as a share of T, in either direction; 0 <= shift < 1
   Choice choice = Choice::range;  ///< how the tolerance is chosen; this determines which of the members below apply
   StatedCost cost = {};           ///< cost of T; `processes` have their own costs
   double lo = 0.0;                ///< smallest tolerance of a range, or the fixed tolerance, SI
-  double hi = std::numeric_limits<double>::infinity();  ///< largest tolerance of a range, SI; infinity: limited by
+  double hi = std::numeric_limits<double>::infinity();  ///< largest tolerance of a range, SI; infinity: a quarter of
                                                         ///< Model::error_bound
   /// The possible tolerances, SI, ascending; only if the study states the key `values`.
   std::vector<double> values = {};
@@ -83,7 +86,8 @@ struct AllocatedPart {
   double nominal_size = 0.0;                  ///< the nominal size, m; only with the key `grades`
   std::vector<StatedProcess> processes = {};  ///< the processes that may be chosen; only with the key `processes`
   std::optional<PartZone> zone = {};          ///< the zone, if the part is one
-  /// The preferred numbers to which the tolerance is rounded down at the end; only with a range or the key `processes`.
+  /// The preferred tolerances, to one of which the search rounds T down at its end; only with a range or with the key
+  /// `processes`.
   std::optional<Rounding> round = {};
 };
 
@@ -91,8 +95,8 @@ struct AllocatedPart {
 enum class Aim {
   least_cost,       ///< the tolerances of least total cost
   equal_effect,     ///< every part uses the same share of the limit on which it has the largest effect
-  equal_tolerance,  ///< one tolerance for all lengths and one for all angles; their ratio is that of the usual sizes in
-                    ///< [errors]
+  equal_tolerance,  ///< one tolerance for all lengths, one for all angles and one for all numbers without unit, in the
+                    ///< ratio of the median tolerances that follow from [errors]
   common_factor     ///< all standard deviations of [errors] times one factor, as large as the limits allow
 };
 
@@ -116,10 +120,10 @@ inline constexpr std::string_view kRoundedDown = "rounded down";
 /// One step of the search for the tolerances.
 struct AllocationStage {
   std::string name;            ///< name of the stage: "linear", "tried on machines", "scaled to the yield", ...
-  double cost = 0.0;           ///< total cost at the end of the stage; NaN if the aim has no costs
-  double lower_bound = 0.0;    ///< lower bound on the least cost in the optimisation of this stage; NaN if the aim has
-                               ///< no costs
-  double rms_share = 0.0;      ///< share of each limit that the optimisation of this stage allowed as root mean square
+  double cost = 0.0;           ///< total cost at the end of the stage; NaN if no part has a cost
+  double lower_bound = 0.0;    ///< lower bound on the least cost in the last optimisation; NaN if the stage changed the
+                               ///< tolerances after it, or if the aim is not least_cost
+  double rms_share = 0.0;      ///< share of each limit that the last optimisation allowed as root mean square
   std::uint64_t machines = 0;  ///< machines tried at the tolerances of this stage; 0: none
   std::uint64_t rejects = 0;   ///< rejects among these machines
 };
@@ -131,8 +135,8 @@ using CurveYield = Axis<"curve_yield">;    ///< Yields at which a cost curve is 
 using CurveFactor = Axis<"curve_factor">;  ///< Factors on all limits at which a cost curve is predicted.
 }  // namespace axis
 
-/// The result of a study of kind `allocation`; SI units; NaN where undefined. Multiplier, use and saving of a response
-/// without a limit are NaN.
+/// The result of a study of kind `allocation`. Numbers are in SI units. Numbers that are not defined are NaN, such as
+/// `multiplier`, `limit_use` and `saving` of a response without a limit.
 struct AllocationResult {
   /// A value for each part.
   template <class T>
@@ -142,46 +146,50 @@ struct AllocationResult {
 
   std::vector<std::string> part_names;  ///< names of the parts
   Parts<std::string> part_members;      ///< names of a part's errors, separated by blanks
-  Parts<std::string> part_unit;         ///< SI unit of the tolerance T: "m" or "rad"
+  Parts<std::string> part_unit;         ///< SI unit of the tolerance T: "m", "rad" or "1"
   Parts<double> tolerance;              ///< tolerance T: the drawing states +-T, or T as the size of a zone
-  Parts<double> sigma;                  ///< standard deviation of the errors about their mean
-  Parts<double> sigmas;             ///< number of sigma in T: T = shift + sigmas x sigma; for a zone see AllocatedPart
-  Parts<double> shift;              ///< offset of the mean, in either direction, in the unit of T
-  Parts<double> cost;               ///< cost of the part; NaN if the aim has no costs
-  Parts<double> share;              ///< share of the total cost
-  Parts<double> mean_square_share;  ///< share of the part in the mean square under the tightest limit; the shares
-                                    ///< of all parts add up to 1
-  /// mean_square_share divided among the errors: the shares of a part's errors add up to that of the part. NaN for an
-  /// error that is in no part.
+  Parts<double> sigma;                  ///< standard deviation of the errors about their mean; of a zone, that of
+                                        ///< its first error
+  Parts<double> sigmas;  ///< number of sigma in T: T = shift + sigmas x sigma; of a zone, see AllocatedPart
+  Parts<double> shift;   ///< offset of the mean, in either direction, in the unit of T
+  Parts<double> cost;    ///< cost of the part; NaN if no part has a cost
+  Parts<double> share;   ///< share of the total cost
+  /// Share of the part in the mean square that all parts together cause in the response with the tightest limit. The
+  /// shares of all parts add up to 1.
+  Parts<double> mean_square_share;
+  /// The same share for each error. The shares of a part's errors add up to the share of the part; for a location and
+  /// an orientation of one feature, to the sum of both. NaN for an error that is in no part.
   Array<double, axis::Factor> error_mean_square_share;
   Parts<std::uint8_t> bound;  ///< AtBound: 0 between bounds, 1 at the lower bound, 2 at the upper bound, 3 a single
                               ///< possible value
   Parts<std::string> chosen;  ///< name of the chosen process or grade, and of the series of numbers to which T is
                               ///< rounded down; empty without these
-  /// Predicted share of good machines, among those with which the tolerances were found, if the tolerance of only this
-  /// part is 5 % larger, or its next larger possible value; NaN if it cannot be larger.
+  /// Predicted share of good machines, among the machines with which the tolerances were found, if only this part has a
+  /// larger tolerance: 5 % larger, or its next larger possible value. NaN if it cannot have a larger one.
   Parts<double> coarser_yield;
 
-  /// @name Zones of a drawing: a number or text for each part, or an empty text if the part is not a zone. All arrays
-  /// are empty if no part is a zone.
+  /// @name Zones of a drawing: a number or text for each part. For a part that is not a zone, texts are empty, and
+  /// lengths and shares are NaN. All arrays are empty if no part is a zone.
   /// @{
   Parts<std::string> zone_feature;  ///< name of the feature on the drawing: "rail"
   Parts<std::string> zone_limbs;    ///< limbs that share the zone: "1-3"
   Parts<std::string> zone_key;      ///< key of the zone in files: "position"
   Parts<std::string> zone_shape;    ///< shape of the zone: "cylinder", "sphere", "planes", or "interval" for a distance
   Parts<std::string> zone_datums;   ///< datums of the zone: "A|B"
-  Parts<double> zone_length;        ///< length of an axis, first side or diameter of a plane (m); NaN: none
+  Parts<double> zone_length;        ///< length of an axis, first side or diameter of a plane, nominal size of a
+                                    ///< distance (m); NaN: none
   Parts<double> zone_width;         ///< second side of a plane (m); 0: round; NaN: none
   Parts<double> zone_inside;        ///< share of features that are inside the zone
   Parts<std::uint8_t> zone_is_needed;  ///< 0 for a zone of orientation that the drawing does not need, otherwise 1
   /// @}
 
-  AtPoses multiplier;  ///< cost saved per unit by which the limit is wider at only this pose
+  AtPoses multiplier;  ///< cost saved per SI unit by which the limit is widened at only this pose, to first order
   AtPoses limit_use;   ///< predicted root mean square, divided by the largest one that the last optimisation allows
-  /// The limit, SI. For a limit that is not on a magnitude: the smallest distance, over the poses, from the response of
-  /// the mechanism with perfect parts to the nearer end.
+  /// The limit, SI. For a limit that is neither on a magnitude nor on a spread: the smallest distance, over the poses,
+  /// from the response of the mechanism with perfect parts to the nearer end of the limit.
   Array<double, axis::Response> limit;
-  /// The ends of the limits, SI; infinite if a limit has only one. Empty if all limits are on magnitudes.
+  /// The lower and upper ends of the limits, SI; an end that a limit does not have is infinite. Empty if all limits are
+  /// on magnitudes.
   /// @{
   Array<double, axis::Response> limit_from;
   Array<double, axis::Response> limit_to;
@@ -192,16 +200,18 @@ struct AllocationResult {
   Array<double, axis::Response> limit_pose_share;
   Array<double, axis::Response> limit_is_spread;
   /// @}
-  /// Share of the mean square that belongs to no part, at the pose where the limit is used most: to the background,
-  /// to errors without a part, to noise of measurements and to interactions of errors. Empty in files of version 0.2.
+  /// Share of the response's mean square that no part causes, at the pose where the limit is used most. Its causes are
+  /// the background, errors in no part, noise of measurements, and interactions of errors. Empty in files of version
+  /// 0.2.
   Array<double, axis::Response> fixed_share;
   Array<double, axis::Response> saving;  ///< cost saved if a limit is one percent wider at all poses, to first order
 
   Aim aim = Aim::least_cost;  ///< what the study optimised
-  double total_cost = 0.0;    ///< cost of all parts; NaN if the aim has no costs
-  /// Lower bound on the cost under the last limits on root mean squares; NaN if the aim has no costs.
+  double total_cost = 0.0;    ///< cost of all parts; NaN if no part has a cost
+  /// Lower bound on the cost of all tolerances that keep the last limits on root mean squares; NaN if the aim is not
+  /// least_cost, or if the tolerances are the lowest ones.
   double lower_bound = 0.0;
-  double gap = 0.0;           ///< upper bound on total_cost minus the least cost; NaN if the aim has no costs
+  double gap = 0.0;           ///< cost of the tolerances of the last optimisation minus lower_bound
   double wanted_yield = 0.0;  ///< yield that the study asked for
   double confidence = 0.95;   ///< confidence that the study asked for
 
@@ -240,8 +250,8 @@ struct AllocationResult {
 /// The result of a study of kind `allocation`, read from a file. Precondition: the result is of this kind.
 inline const AllocationResult& allocation_of(const StoredResult& result) { return found_of<AllocationResult>(result); }
 
-/// The tables of the result: certificate, parts of the drawing, errors in no part, cost of each limit, and stages of
-/// the search.
+/// The tables of the result: certificate, parts of the drawing, errors in no part, use and cost of each limit, stages
+/// of the search, and predicted costs with other yields and limits.
 std::vector<Table> allocation_tables(const StoredResult& result, const TableOptions& options = {});
 
 }  // namespace poesy

@@ -11,7 +11,7 @@ namespace poesy {
 
 /// Tolerances that a workshop prefers: multiples of a step, or preferred numbers of ISO 3 in some unit.
 struct Rounding {
-  double unit;                                 ///< the step, or the unit of the series (1 mm or 1 deg), in m or rad
+  double unit;                                 ///< the step, or the unit of the series (1 mm, 1 deg or 1), SI
   std::optional<PreferredSeries> series = {};  ///< the series of preferred numbers; none: multiples of the step
 
   double down(double tolerance) const;  ///< The largest preferred tolerance that is not above this one; 0 if there is

@@ -21,7 +21,7 @@
 namespace poesy::allocation {
 namespace {
 
-/// Yields, and factors by which all limits are multiplied, for which costs are predicted.
+/// Costs are predicted for these yields, and for all limits multiplied by these factors.
 constexpr std::array kYields{0.9, 0.95, 0.98, 0.99, 0.995, 0.9973, 0.999, 0.9995, 0.9999};
 constexpr std::array kFactors{0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.35, 1.5, 2.0};
 
@@ -53,8 +53,8 @@ YieldVerdict verdict_of(const MachineLoads& fresh, double yield, double confiden
   return verdict;
 }
 
-/// [parts] The share of each part in the mean square under a limit. The share of an orientation that the drawing does
-/// not need is added to that of its location.
+/// [parts] The share of each part in the mean square that all parts cause under a limit at a pose. limit: its row in
+/// `limits`. The share of an orientation that the drawing does not need is added to that of its location.
 std::vector<double> mean_square_shares(const ToleranceProgramme& programme, const TolerancePoint& point,
                                        const ToleranceLimits& limits, std::size_t limit) {
   const double need = limits.need(limit, point.tolerance);
@@ -70,8 +70,9 @@ std::vector<double> mean_square_shares(const ToleranceProgramme& programme, cons
   return shares;
 }
 
-/// Divides the share of parts in a mean square among their errors, in proportion to variance times MeanSquares::slope.
-/// weights: the errors with numbers proportional to their variances.
+/// Divides `of_parts`, the share of one or two parts in a mean square, among their errors, in proportion to variance x
+/// slope. slopes: [errors] MeanSquares::slope under the limit. weights: the errors of the parts, each with a number
+/// proportional to its variance. Writes the shares of these errors into `shares`.
 void divide_share(std::span<const double> slopes, std::span<const ErrorFactor> weights, double of_parts,
                   Array<double, axis::Factor>& shares) {
   double sum = 0.0;
@@ -212,7 +213,7 @@ void add_limits(const SearchProblem& problem, const FoundTolerances& search, con
     for (std::size_t m = 0; m < poses; ++m) {
       const std::size_t row = k * poses + m;
       const double allowed = candidate.share * rooms[m];
-      const double fixed = allowed * allowed - limits.room[row];  // mean square of everything that belongs to no part
+      const double fixed = allowed * allowed - limits.room[row];  // mean square that no part causes
       const double square = fixed + limits.need(row, candidate.point.tolerance);
       found.limit_use(r, m) = std::sqrt(std::max(0.0, square)) / allowed;
       if (found.limit_use(r, m) > most_used) {
@@ -220,8 +221,9 @@ void add_limits(const SearchProblem& problem, const FoundTolerances& search, con
         found.fixed_share(r) = std::max(0.0, fixed) / square;
       }
       if (multiplier.empty()) continue;
-      // The multiplier of the programme is the cost saved per unit of room. The room is (share x limit)^2 minus the
-      // effect of fixed errors, so the chain rule gives the cost saved per unit of the limit.
+      // ChosenTolerances::multiplier is the cost saved per unit of ToleranceLimits::room. This room is (share x
+      // limit)^2 minus the mean square that no part causes, so the chain rule gives the cost saved per unit of the
+      // limit.
       found.multiplier(r, m) = multiplier[row] * 2.0 * candidate.share * allowed / limit_of_room;
       sum += found.multiplier(r, m) * (rooms[m] / least);
     }
@@ -229,7 +231,7 @@ void add_limits(const SearchProblem& problem, const FoundTolerances& search, con
   }
 }
 
-/// Sets the predicted costs at other yields and at other limits. Those at other yields follow from the loads
+/// Sets the predicted costs at other yields and with other limits. The prediction for other yields uses the loads
 /// (MachineLoads) of the machines with which the tolerances were found.
 void add_curves(const SearchProblem& problem, const FoundTolerances& search, AllocationResult& found) {
   const auto& [point, chosen, share] = search.design.candidate;
@@ -271,7 +273,7 @@ AllocationResult result_of(const SearchProblem& problem, const FoundTolerances& 
   found.aim = problem.options.aim;
   found.calibrated = study.mechanism.calibrated;
   found.total_cost = candidate.point.cost;
-  // NaN if the tolerances are the lowest ones, which no programme chose.
+  // The bound is NaN if the aim is not least_cost, or if no optimisation chose the tolerances (the lowest ones).
   found.lower_bound = candidate.chosen.lower_bound;
   found.gap = candidate.chosen.cost - candidate.chosen.lower_bound;
   found.wanted_yield = problem.options.yield;
@@ -323,7 +325,8 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
 /// An estimate of how many times a search tries all machines, including the certificate.
 constexpr double kTrials = 5.0;
 
-/// The expected work of a search with calibrated machines. A few of them are solved to measure their time.
+/// The expected work of a search with calibrated machines. To measure the time for a machine, a few machines are
+/// solved.
 WorkOutlook trying_calibrated(const std::shared_ptr<const Plan>& plan, const Model& model, const Study& study,
                               const std::shared_ptr<const MachineCalibration>& calibration) {
   return {[plan, &model, &study, calibration](double) {
@@ -345,10 +348,11 @@ Outlook allocation_outlook(const Study& study, const Model& model, const PoseSet
   const std::size_t rows = study.analysis.limits.size() * poses.size();
   const std::size_t loads = plan->samples() * sizeof(double);
   const std::size_t squares = 3 * rows * errors * sizeof(double);
-  // The numbers at a pose: the use and the multiplier of each limit, the pose's coordinates and its condition number.
+  // How many numbers a result stores for a pose: limit_use and multiplier of each response, the coordinates of the
+  // pose, and its condition number.
   const std::size_t of_pose = 2 * study.model().responses.size() + study.model().pose_coordinates.size() + 1;
   const std::size_t numbers = poses.size() * of_pose * sizeof(double);
-  // The numbers and names of a part, and its text in the certificate's study.
+  // Bytes in the result file for a part: its numbers and names, and its text in the study of the certificate.
   constexpr std::size_t kPart = 400;
   const std::size_t parts = kPart * asked_of<AllocationOptions>(study.analysis).parts.size();
   const std::size_t file = numbers + poses.size() * kSolverColumns + parts;

@@ -1,4 +1,4 @@
-// The stages of the search that scale tolerances until machines have the yield that was asked for.
+// The stages of the search that scale tolerances until machines have the yield that the study asks for.
 
 #include <algorithm>
 #include <cmath>
@@ -38,8 +38,8 @@ Rescaled rescale(const SearchProblem& problem, const Linearisation& linearisatio
   return {*std::move(next), moved};
 }
 
-/// Changes tolerances until a pilot, which is only a part of the machines, has about the yield that was asked for.
-/// Measures effects again after large changes of tolerances.
+/// Changes tolerances until a pilot, which is a trial of only a part of the machines, has about the yield that the
+/// study asks for. Measures mean squares again after large changes of tolerances.
 Linearised approach_yield(const SearchProblem& problem, Linearised from, StageLog& log) {
   auto [linearisation, candidate] = std::move(from);
   const Study& study = problem.run.study;
@@ -112,7 +112,7 @@ Tightened tighten_rejecting_parts(const SearchProblem& problem, Candidate from, 
 /// Tries the lowest tolerances as the last resort. rejects: number of rejects at the smallest tolerances tried before.
 ToleranceDesign tighten_to_lowest(const SearchProblem& problem, double share, std::uint64_t rejects, StageLog& log) {
   const TolerancePoint lowest = problem.programme.lowest();
-  // These tolerances are not the solution of a programme, so they have no lower bound and no multipliers.
+  // These tolerances do not solve an optimisation problem, so they have no lower bound and no multipliers.
   ToleranceDesign design{{lowest, {lowest, kNaN, {}}, share}, problem.run.study.seed, {}, {}};
   design.load = loads_of(problem, design.seed, lowest.tolerance);
   if (rejects_of(design.load) > problem.allowed.design) refuse_lowest(problem, rejects_of(design.load));

@@ -23,8 +23,9 @@ AllowedRejects allowed_rejects(double yield, double confidence, std::uint64_t ma
     const std::uint64_t middle = low + (high - low) / 2;
     (holds(middle) ? low : high) = middle;
   }
-  // The largest d with d + z sqrt(2 d) <= low, where d is the number for the design and z a quantile of the normal
-  // distribution. The factor 2 is there because both numbers of rejects scatter.
+  // The number d for the design is the largest with d + z sqrt(2 d) <= low, where z is the quantile of the standard
+  // normal distribution at 99 %. The factor 2 is needed because the numbers of rejects of design and certificate both
+  // scatter.
   const double half = 0.5 * normal_quantile(1.0, 0.99) * std::sqrt(2.0);
   const double root = std::sqrt(half * half + static_cast<double>(low)) - half;
   return {low, static_cast<std::uint64_t>(root * root)};

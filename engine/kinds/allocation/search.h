@@ -15,16 +15,16 @@
 
 /// The search for the tolerances of a study. Its stages are linearise(), settle(), scale_to_yield(), improve(),
 /// scale_to_other_machines(), use_remaining_yield() and round_down() (search_stages.h). Each stage computes new
-/// tolerances from those of the stage before. The search is a sequence of runs, each with its own checkpoint, and its
-/// decisions depend only on the study.
+/// tolerances from those of the stage before. The search is a sequence of runs, each with a checkpoint of its own. The
+/// decisions of the search depend only on the study.
 namespace poesy::allocation {
 
 /// The numbers of rejects that the certificate and the design may have. The design is the set of machines with which
 /// the tolerances are found; the certificate is a set of fresh machines that is solved once, after the search.
 struct AllowedRejects {
   std::uint64_t certificate;  ///< largest number of rejects with which the certificate holds
-  std::uint64_t design;       ///< largest number of rejects of the design, among as many machines, with which the
-                              ///< certificate will probably hold
+  std::uint64_t design;       ///< largest number of rejects among the machines of the design with which the certificate
+                              ///< will probably hold; the design has as many machines as the certificate
 };
 
 /// The allowed numbers of rejects among this many machines. The certificate allows as many rejects as still show, with
@@ -34,8 +34,8 @@ struct AllowedRejects {
 /// normal. Precondition: machines >= trials_without_failure().
 AllowedRejects allowed_rejects(double yield, double confidence, std::uint64_t machines);
 
-/// A seed for machines that the study draws for no other purpose. set: 0 for the certificate, 1 for scaling to other
-/// machines.
+/// A seed for a set of machines, which the study uses for nothing else. set: 0 for the machines of the certificate, 1
+/// for those of scale_to_other_machines().
 std::uint64_t seed_of_others(const Study& study, SampleIndex set);
 
 /// The data that a search needs, which do not change between its stages.
@@ -45,8 +45,8 @@ struct SearchProblem {
 
   const StudyRun& run;                            ///< the study, its model and how it is run
   const AllocationOptions& options;               ///< the options of the study
-  ToleranceProgramme programme;                   ///< the parts whose tolerances are sought
-  AllowedRejects allowed;                         ///< allowed rejects of as many machines as the study has samples
+  ToleranceProgramme programme;                   ///< the optimisation problem for the tolerances of the parts
+  AllowedRejects allowed;                         ///< allowed rejects among as many machines as the study has samples
   std::optional<MachineCalibration> calibration;  ///< how the study's machines are calibrated; none: they are not
 
   /// The calibration of the machines of another study, which differs from the study of the search only in the sizes of
@@ -79,7 +79,8 @@ struct ScreenedMachines {
 struct ToleranceDesign {
   Candidate candidate;        ///< the tolerances, with the solution of the last optimisation
   std::uint64_t seed = 0;     ///< the seed of the machines
-  std::vector<double> load;   ///< [machines] loads from the last trial of all machines, updated for screened machines
+  std::vector<double> load;   ///< [machines] loads from the last trial of all machines; with_screened_loads() updates
+                              ///< them
   ScreenedMachines screened;  ///< screened machines with their loads at these tolerances; empty if the tolerances are
                               ///< the lowest ones
 };
@@ -110,8 +111,9 @@ std::optional<FoundTolerances> find_tolerances(const SearchProblem& problem);
 /// The limits of the last optimisation of a search.
 ToleranceLimits limits_of(const SearchProblem& problem, const FoundTolerances& found);
 
-/// The cost that the last optimisation predicts if root mean squares may use `share` of each limit and all limits are
-/// multiplied by `wider`. NaN if no tolerances keep these limits.
+/// The predicted cost if root mean squares may use `share` of each limit and all limits are multiplied by `wider`: the
+/// cost of the tolerances that the optimisation then chooses from the mean squares of the last optimisation, rounded
+/// down as the study asks. NaN if no tolerances keep these limits.
 double predicted_cost(const SearchProblem& problem, const FoundTolerances& found, double share, double wider);
 
 /// The number of rejects: machines with a load (MachineLoads) above 1.

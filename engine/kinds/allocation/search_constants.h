@@ -2,21 +2,20 @@
 
 #include <cstddef>
 
-/// The constants of the search for tolerances, with reasons to change them. A study cannot set them, because a result
-/// must depend only on the study and the version of the program. theory.md ("From root mean squares to a certificate")
-/// describes the method.
+/// The constants of the search for tolerances, with reasons to change them in the source. A study cannot set them.
+/// theory.md ("From root mean squares to a certificate") describes the method.
 namespace poesy::allocation {
 
 /// The size of errors in the first linearisation, as a share of their usual size. Make it smaller if the first
 /// linearisation is far from the last one, larger if responses to such small errors drown in rounding.
 inline constexpr double kLinearSize = 0.01;
-/// The trust region of a linearisation: the factor by which a tolerance may grow. Make it smaller for mechanisms whose
-/// effects change much between such tolerances.
+/// The trust region of a linearisation: the factor by which a tolerance may grow. Make it smaller for mechanisms in
+/// which the effect of an error changes much if its tolerance grows by this factor.
 inline constexpr double kMaxGrowth = 4.0;
 /// The largest number of linearisations before machines are tried. Make it larger if costs still change by then.
 inline constexpr std::size_t kMaxLinearisations = 6;
-/// Linearisations are repeated until the cost changes by less than this share of it. Later stages change the cost by
-/// percents.
+/// Linearisations are repeated until the cost changes by less than this share of the cost. A smaller share is useless,
+/// because later stages change the cost by a few per cent.
 inline constexpr double kCostTolerance = 1e-3;
 
 /// The largest number of trials of machines in one loop. Make it larger if loops end before the deciding load is near
@@ -40,18 +39,19 @@ inline constexpr std::size_t kPilotOf = 8;
 inline constexpr std::size_t kMinPilot = 20'000;
 /// After a relative change of a tolerance by more than this, effects are measured again or all machines are tried
 /// again. The trials of a pilot end when the deciding load differs from 1 by less than this. Make it smaller for
-/// mechanisms whose effects change much between such tolerances.
+/// mechanisms in which the effect of an error changes much with such a change of its tolerance.
 inline constexpr double kRelinearise = 0.1;
-/// Root mean squares do not show which parts cause rejects if the share of limits that they may use, so that the yield
-/// is kept, is smaller than this number times the share before machines were tried. Then the search tightens the parts
-/// whose errors are larger in rejected machines. Make the number larger if this starts too late.
+/// To keep the yield, the search reduces the share of each limit that root mean squares may use. If the share falls
+/// below this number times its value before machines were tried, root mean squares do not show which parts cause
+/// rejects. Then the search tightens the parts whose errors are larger in rejected machines. Make the number larger if
+/// this starts too late.
 inline constexpr double kBlindShare = 0.7;
 
 /// The largest number of machines from which the gradient of the yield is estimated, unless the design may have more
-/// rejects. With more machines the gradient is less noisy, but it is biased, because the machines are farther from the
-/// limit.
+/// rejects than this. With more machines the gradient is less noisy, but it is biased, because the machines are farther
+/// from the limit.
 inline constexpr std::size_t kMaxGradientMachines = 3000;
-/// The score of a part (PartScores) is significant if it is more than this number of its standard deviations.
+/// The score of a part (PartScores) is significant if it is larger than this number times its standard deviation.
 inline constexpr double kSignificance = 3.0;
 /// The largest number of steps along the gradient. More steps would fit the noise of the machines (D66).
 inline constexpr std::size_t kMaxGradientSteps = 3;
@@ -63,19 +63,19 @@ inline constexpr double kGradientGrowth = 1.3;
 /// The least share of the cost that a step along the gradient must save. A smaller saving is noise.
 inline constexpr double kMinSaving = 1e-4;
 
-/// The factor by which the tolerance of a part is multiplied to find its effect. Texts of results call this "5 %
-/// coarser".
+/// The factor by which the tolerance of a part is multiplied to predict the yield with a coarser part. Texts of results
+/// call such a tolerance "5 % larger".
 inline constexpr double kCoarserStep = 1.05;
 /// The number of machines near the limit from which the effect of a coarser part is estimated. With more machines, the
 /// predicted yield is less noisy.
 inline constexpr std::size_t kProbes = 700;
 /// The number of machines near the limit for parts of small effect. Each of them also has a mirrored machine.
 inline constexpr std::size_t kProbesOfSmall = 3000;
-/// A part has a small effect if the loads of machines change by less than this times the relative change of its
-/// tolerance (root mean square).
+/// A part has a small effect if a change of its tolerance changes the loads of machines (root mean square) by less than
+/// this number times the relative change of the tolerance.
 inline constexpr double kSmallEffect = 0.01;
-/// The factor on the tolerance of a part in the first step that uses remaining yield. The factor of each further step
-/// is the square of the one before.
+/// The factor on the tolerance of a part in the first step of use_remaining_yield(). The factor of each further step is
+/// the square of the one before.
 inline constexpr double kFirstCoarsening = 1.25;
 /// The largest number of steps by which a part gets coarser to use remaining yield.
 inline constexpr std::size_t kMaxCoarsenings = 12;

@@ -9,14 +9,14 @@
 #include "engine/kinds/allocation/search.h"
 #include "engine/run/result.h"
 
-/// The stages of the search for tolerances. Each function returns a new value and adds its stage to a log. It throws
-/// SearchStopped if a run of machines was stopped.
+/// The stages of the search for tolerances. The function of a stage returns new tolerances and adds the stage to a log.
+/// It throws SearchStopped if a run of machines was stopped.
 namespace poesy::allocation {
 
-/// Thrown by the stages and caught by find_tolerances().
+/// The exception with which a stage ends if a run of machines was stopped. find_tolerances() catches it.
 struct SearchStopped {};
 
-/// The value of a run; throws SearchStopped if the run was stopped.
+/// The value that a run returned. Throws SearchStopped if there is none, because the run was stopped.
 template <class Value>
 Value unless_stopped(std::optional<Value> value) {
   if (!value) throw SearchStopped();
@@ -35,11 +35,11 @@ Linearisation measure(const SearchProblem& problem, std::span<const double> tole
 /// None if it is infeasible. Throws InputError if it is unbounded.
 std::optional<Candidate> choose(const SearchProblem& problem, const Linearisation& linearisation, double share,
                                 const TrustRegion& region);
-/// Solves this problem with the least share of limits between `low` and `high` for which it is feasible, to a
-/// thousandth.
+/// The candidate that choose() returns for the smallest feasible share between `low` and `high`. The share is accurate
+/// to a thousandth. None if `high` is infeasible too.
 std::optional<Candidate> choose_by_least_share(const SearchProblem& problem, const Linearisation& linearisation,
                                                double low, double high, const TrustRegion& region);
-/// The largest of the ratios a_i / b_i and b_i / a_i, over all i.
+/// The largest of the ratios a_i / b_i and b_i / a_i, over all i; 1 if a and b are equal.
 double largest_ratio(std::span<const double> a, std::span<const double> b);
 
 /// The study whose machines have this seed and these tolerances [parts].
@@ -64,8 +64,8 @@ ToleranceDesign with_screened_loads(ToleranceDesign design);
 /// machine that was screened out.
 bool misses_rejects(const SearchProblem& problem, const ToleranceDesign& design);
 /// Multiplies all tolerances by one factor, except those of the parts marked in `stays` [parts], so that the screened
-/// machines have as many rejects as the design allows. If no factor that was tried keeps the yield for these machines,
-/// the design is returned unchanged, and the certificate decides.
+/// machines have as many rejects as the design may have. If no factor that was tried keeps the yield for these
+/// machines, the design is returned unchanged, and the certificate will show whether the yield is kept.
 ToleranceDesign scale_screened(const SearchProblem& problem, const ToleranceDesign& from,
                                const std::vector<bool>& stays);
 
@@ -94,7 +94,7 @@ struct Linearised {
 /// squares cannot be made small enough for that, makes them as small as possible.
 Linearised linearise(const SearchProblem& problem, StageLog& log);
 
-/// Tolerances that hardly change any more when effects are measured again.
+/// Tolerances that hardly change any more when mean squares are measured again.
 struct Settled {
   Linearisation linearisation;  ///< the last linearisation
   Candidate candidate;          ///< the last tolerances, or the lowest ones if the last optimisation problem was
@@ -102,8 +102,8 @@ struct Settled {
   Candidate feasible;           ///< the last tolerances that an optimisation chose
 };
 
-/// Measures effects at the present tolerances and optimises the tolerances, in turn, until cost and tolerances hardly
-/// change.
+/// In turn, measures mean squares at the present tolerances and optimises the tolerances, until cost and tolerances
+/// hardly change.
 Settled settle(const SearchProblem& problem, Linearised from, StageLog& log);
 
 /// Tolerances with which the design's machines keep the yield, and the mean squares that the optimisation used.
@@ -116,13 +116,13 @@ struct Scaled {
 /// fails, or needs a much smaller share, tightens the parts whose errors cause the rejects.
 Scaled scale_to_yield(const SearchProblem& problem, Settled from, StageLog& log);
 
-/// Shifts tolerance between parts along the gradient of the yield, if that reduces the cost. The gradient is estimated
-/// from the machines with the largest loads.
+/// Makes some parts finer and others coarser, along the gradient of the yield, if that reduces the cost at the same
+/// yield. The gradient is estimated from the machines with the largest loads.
 ToleranceDesign improve(const SearchProblem& problem, const Linearisation& linearisation, ToleranceDesign from,
                         StageLog& log);
 
-/// Scales all tolerances until other machines, with another seed, keep the yield. For the machines by which tolerances
-/// were chosen, the yield is biased upwards.
+/// Scales all tolerances until other machines, drawn with another seed, keep the yield. The machines with which the
+/// tolerances were chosen show a yield that is biased upwards.
 ToleranceDesign scale_to_other_machines(const SearchProblem& problem, const ToleranceDesign& from, StageLog& log);
 
 /// Tolerances, the loads of the design's machines with them, and the predicted yield if only one part is made coarser.
@@ -132,8 +132,9 @@ struct Probed {
                                       ///< AllocationResult::coarser_yield
 };
 
-/// Predicts the yield for each part if only this part is coarser, and makes those parts coarser that the yield allows.
-/// At the least cost there are no such parts, because every coarser part would break the yield.
+/// Predicts the yield for each part if only this part is coarser. Makes parts coarser if that saves cost and the design
+/// still has no more rejects than it may have. At the least cost there are no such parts, because every coarser part
+/// would break the yield.
 Probed use_remaining_yield(const SearchProblem& problem, ToleranceDesign from, StageLog& log);
 
 /// Rounds tolerances down as the study asks for their parts. If a tolerance changes, tries all machines again.

@@ -19,7 +19,7 @@ inline bool has_costs(const AllocationResult& found) { return !std::isnan(found.
 /// Positions of the responses that have a limit, ascending.
 std::vector<std::size_t> limited_responses(const AllocationResult& found);
 
-/// The pose with the largest of these numbers, one for each pose; none if no number is above zero.
+/// The pose with the largest number; none if no number is above zero. at_poses: [poses] the numbers.
 std::optional<std::size_t> worst_pose(std::span<const double> at_poses);
 
 /// The shares by which parts are ordered: shares of the cost, or of the mean square if the study has no costs.

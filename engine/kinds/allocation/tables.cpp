@@ -22,7 +22,7 @@ namespace {
 using Result = AllocationResult;
 
 constexpr int kCostDigits = 4;
-constexpr int kFullDigits = 6;  ///< digits of a tolerance that is shown in full
+constexpr int kFullDigits = 6;  ///< digits of a tolerance and of its standard deviation
 
 std::string cost_text(double cost) { return number_text(cost, kCostDigits); }
 
@@ -51,14 +51,14 @@ Table certificate_table(const StoredResult& result) {
   return table;
 }
 
-/// What the tolerance T of part n consists of, in words: "3 sigma + 10 % of T".
+/// The tolerance T of part n as a sum: "3 sigma + 10 % of T".
 std::string made_of(const Result& found, std::size_t n) {
   const std::string text = number_text(found.sigmas(n), kCostDigits) + " sigma";
   const double share = found.shift(n) / found.tolerance(n);
   return share > 0.0 ? text + " + " + percent_text(share) + " of T" : text;
 }
 
-/// Whether tolerances were rounded down after the least cost had been found, so that they cost more.
+/// Whether tolerances were rounded down at the end of the search. They then cost more than before.
 bool is_rounded(const Result& found) {
   return std::ranges::find(found.stages, kRoundedDown, &AllocationStage::name) != found.stages.end();
 }
@@ -117,8 +117,8 @@ FilledColumn words_column(std::string name, std::string heading, std::span<const
           [values](std::size_t at) { return text_cell(values[at]); }};
 }
 
-/// Extends the list `columns` by columns with the tolerance T with all its digits and with its components; narrow
-/// tables omit these columns.
+/// Adds columns with the tolerance T to six digits, the standard deviation, their unit, and the errors of each part.
+/// Narrow tables omit these columns.
 void add_details(const Result& found, std::vector<FilledColumn>& columns) {
   constexpr int kFirstToGo = 3;
   const auto unit = [&](std::size_t n) { return display_unit(dimension_of(found.part_unit(n))); };
@@ -134,8 +134,8 @@ void add_details(const Result& found, std::vector<FilledColumn>& columns) {
   columns.push_back(words_column("errors", "errors", found.part_members, kFirstToGo + 1));
 }
 
-/// Whether the part adds nothing to any mean square and has the largest tolerance that the search allows, so that this
-/// tolerance says nothing about the part.
+/// Whether the part adds nothing to the mean square under the tightest limit and is at its upper bound. The limits then
+/// do not determine its tolerance.
 bool has_no_effect(const Result& found, std::size_t n) {
   constexpr double kRounding = 1e-12;  // a smaller share of the mean square is rounding
   return found.mean_square_share(n) < kRounding && found.bound(n) == static_cast<std::uint8_t>(AtBound::upper);
@@ -184,15 +184,15 @@ double largest(std::span<const double> at_poses) {
   return pose ? at_poses[*pose] : 0.0;
 }
 
-constexpr double kNoticeable = 0.001;  // least share of a mean square that a table mentions
+constexpr double kNoticeable = 0.001;  // smallest share of a mean square that tables show
 
 /// Returns true if errors that belong to no part make up at least this share of the mean square of a limited response.
 bool have_fixed_share(const Result& found, double least) {
   return std::ranges::any_of(found.fixed_share.all(), [&](double share) { return share >= least; });
 }
 
-/// A note on the share of the mean square that belongs to no part, under the limit that is used most. Empty if the
-/// share is hardly anything.
+/// A note on the share of the mean square that no part causes, under the limit that is used most. Empty if the share is
+/// below kNoticeable.
 std::string fixed_note(const Result& found) {
   const std::vector<std::size_t> limited = limited_responses(found);
   if (found.fixed_share.empty() || limited.empty()) return {};
@@ -253,7 +253,7 @@ std::vector<FilledColumn> pose_columns(const StoredResult& result, const std::st
            }}};
 }
 
-/// The limit on response r.
+/// The limit on response r, as the study states it.
 ValueLimit limit_on(const Result& found, std::size_t r) {
   const double most = found.limit(r);
   if (!found.limit_is_spread.empty() && found.limit_is_spread(r) == 1.0) return ValueLimit::of_spread(most);
@@ -349,14 +349,15 @@ Table stages_table(const Result& found) {
   return table;
 }
 
-/// The change of a predicted cost from that of the tolerances found, to a hundredth of a percent. Less than that is the
-/// rounding of the search.
+/// The relative change from the cost of the tolerances found to a predicted cost, rounded to 0.01 %. Smaller changes
+/// are only rounding errors of the search.
 double change_of_cost(double predicted, double found) {
   constexpr double kHundredths = 1e4;
   return std::round(kHundredths * (predicted / found - 1.0)) / kHundredths + 0.0;
 }
 
-/// Fills a table with predicted costs and their changes from the cost of the tolerances found.
+/// Fills a table with predicted costs, and their changes from the cost of the tolerances found. at: the column with the
+/// yields or factors for which the costs are predicted.
 void add_costs(const Result& found, std::span<const double> costs, FilledColumn at, Table& table) {
   table.notes.emplace_back("predicted, not certified; change: from the cost of the tolerances found");
   fill(table, positions(costs.size()),

@@ -14,17 +14,19 @@
 namespace poesy {
 namespace {
 
-/// The number of machines in a piece of work. It is small so that a piece ends soon even with many variations.
+/// The largest number of machines in a piece of work. It is small so that a piece does not take long even if there are
+/// many variations.
 constexpr std::size_t kVariedAtOnce = 40;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// By experience, about one of this many poses decides for a machine (kDeciding). Used to estimate the number of solves
-/// that remain.
+/// From experience, about one pose in this many decides for a machine (kDeciding). Used to estimate how many solves
+/// remain.
 constexpr std::size_t kOfPosesDecide = 4;
 
-/// Machines and their variations. A piece of work solves all variations of some machines.
+/// The machines to solve, and the variations with which they are solved. A piece of work solves some of the machines
+/// with all variations.
 struct VariedMachines {
   std::span<const std::uint32_t> machines;  ///< [machines] numbers of the machines
-  std::span<const Variation> variations;    ///< variations under each of which these machines are solved
+  std::span<const Variation> variations;    ///< variations, each of which is applied to every machine
 
   std::size_t pieces() const { return variations.empty() ? 0 : (machines.size() + kVariedAtOnce - 1) / kVariedAtOnce; }
   std::span<const std::uint32_t> machines_of(std::size_t piece) const {
@@ -56,7 +58,7 @@ struct VariedLoads {
   }
 };
 
-/// Solves a piece of work. Owns the scratch memory of one thread.
+/// Computes the loads of the machines of a piece of work with all variations. Owns the scratch memory of one thread.
 class VariationEvaluator : private LoadSolver {
  public:
   VariationEvaluator(const Plan& plan, const Model& model, const RelativeLimits& limits, const VariedMachines& varied,
@@ -80,8 +82,8 @@ class VariationEvaluator : private LoadSolver {
   }
 
  private:
-  /// Solves all machines with each variation at all poses, because limits over poses need all poses, and because a
-  /// calibration takes more time than the solves at all poses.
+  /// Solves all machines of a piece with each variation at all poses. Used for limits that are judged from several
+  /// poses together, and for calibrated machines, whose calibration takes more time than the solves at all poses.
   VariedLoads solve_all(std::size_t piece) {
     VariedLoads found{&varied_, {}, varied_.loads_of(piece) * plan_->poses().size()};
     std::vector<double> loads(count_);
@@ -122,9 +124,9 @@ class VariationEvaluator : private LoadSolver {
     found.solves += at_pose_.size();
   }
 
-  /// Solves variations at a pose. If `deciding` is true, solves each variation of each machine for which the pose
-  /// decides. Otherwise solves the other machines, but only with variations that have changed some load much: their
-  /// effect may be small at the deciding pose and large elsewhere.
+  /// Solves machines with variations at pose m. If `deciding` is true, solves the machines for which this pose decides,
+  /// with all variations. Otherwise solves the other machines, but only with variations that have changed some load
+  /// much, because other poses may decide with such variations.
   void solve_at(std::size_t m, bool deciding, VariedLoads& found) {
     pairs_.clear();
     for (const std::size_t p : draw_per_pose(PoseIndex(m), numbers_)) {
@@ -140,7 +142,7 @@ class VariationEvaluator : private LoadSolver {
     if (!pairs_.empty()) solve_pairs(m, found);
   }
 
-  /// Solves the pairs of a variation and a machine in `pairs_` at a pose, and updates their loads.
+  /// Solves at pose m all pairs of a variation and a machine in `pairs_`, updates their loads, and empties `pairs_`.
   void solve_pairs(std::size_t m, VariedLoads& found) {
     const std::size_t count = pairs_.size();
     for (std::size_t p = 0; p < plan_->factors().size(); ++p) {
@@ -173,7 +175,7 @@ class VariationEvaluator : private LoadSolver {
   }
 
   const VariedMachines& varied_;
-  std::size_t count_ = 0;             ///< B, the number of machines in the piece
+  std::size_t count_ = 0;             ///< number of machines in the piece
   std::vector<std::size_t> numbers_;  ///< [machines] numbers of the machines
   std::vector<double> drawn_;         ///< [errors x machines] errors at the present pose, without variations
   std::vector<double> at_pose_;       ///< [poses x machines] loads at each pose without variations
@@ -182,7 +184,7 @@ class VariationEvaluator : private LoadSolver {
   /// Pairs of a variation and a machine that are still to be solved at the present pose, as positions in an array
   /// [variations x machines].
   std::vector<std::size_t> pairs_;
-  std::vector<double> of_pairs_;  ///< loads of these pairs at the present pose
+  std::vector<double> of_pairs_;  ///< [pairs] loads of the pairs in pairs_ at the present pose
   std::vector<std::uint8_t> missing_;
   std::vector<std::uint8_t> beyond_;
 };

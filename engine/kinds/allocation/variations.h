@@ -20,7 +20,7 @@ struct ErrorFactor {
   double factor;      ///< the factor, finite; a negative factor mirrors the error
 };
 
-/// Factors on some errors that describe a changed tolerance or mirrored errors.
+/// The factors by which some errors of a machine are multiplied, to change a tolerance or to mirror errors.
 using Variation = std::vector<ErrorFactor>;
 
 /// The loads (MachineLoads) [variations x machines] of the listed machines with each variation alone. machines:
@@ -29,7 +29,7 @@ using Variation = std::vector<ErrorFactor>;
 /// them at these poses by more than half of kDeciding, other poses may decide, and the whole group is solved with this
 /// variation at all poses. Calibrated machines are calibrated anew with each variation, with the same noise and prior
 /// knowledge, and solved at all poses. The result has the same bits for any number of threads and on all ranks. None if
-/// the run was stopped. calibration: as of machine_loads(). Preconditions: the study draws errors per machine; no
+/// the run was stopped. calibration: as for machine_loads(). Preconditions: the study draws errors per machine; no
 /// variation has an error that machines draw anew at each pose, because such an error is in no part.
 std::optional<std::vector<double>> try_variations(const Plan& plan, const Model& model,
                                                   std::span<const ResponseLimit> limits,

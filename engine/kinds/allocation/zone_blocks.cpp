@@ -13,7 +13,7 @@
 namespace poesy {
 namespace {
 
-/// A zone of a feature.
+/// A zone of a feature: the feature's index in ModelDescription::features, and the key of the zone.
 struct ZoneAt {
   std::size_t feature;
   std::string_view key;
@@ -99,7 +99,7 @@ void check_block(const StudySection& block, const StudyValue& zones, const Study
   }
 }
 
-/// The errors that belong to a zone.
+/// The errors of the part that a zone forms.
 PartMembers errors_of(const ZoneAt& zone, const ModelDescription& model) {
   const Feature& feature = model.features[zone.feature];
   if (zone_class(zone.key, feature.kind) == ZoneClass::orientation) return feature.tilt;
@@ -118,7 +118,7 @@ void check_errors(const StudyValue& value, const ZoneAt& zone, const Study& stud
   check_distributions(value, errors, study);
 }
 
-/// Refuses keys that only distances may have.
+/// Refuses keys that only distances may have if another zone is in the block.
 void check_distances(const StudySection& block, const std::vector<ZoneAt>& zones, const ModelDescription& model) {
   for (const std::string_view key : {"shift", "grades", "nominal_size"}) {
     const auto value = block.find(key);
@@ -131,7 +131,7 @@ void check_distances(const StudySection& block, const std::vector<ZoneAt>& zones
   }
 }
 
-/// Whether two zones of different limbs share a tolerance if the limbs are identical.
+/// Whether two zones would share a tolerance if their limbs were identical. False for zones of one limb.
 bool are_alike(const ZoneAt& a, const ZoneAt& b, const ModelDescription& model) {
   const Feature& one = model.features[a.feature];
   const Feature& other = model.features[b.feature];

@@ -14,8 +14,9 @@
 
 /// Zones of a drawing as parts. The mean squares of a feature's errors are linear in the squares of its tolerances. Let
 /// T be the width of the zone of location, T_o that of the zone of orientation, and k the number of standard deviations
-/// in half a zone. With a zone of orientation, each error of the middle has the mean square (T^2 - T_o^2) / 4 k^2, and
-/// the tilt a multiple of T_o^2. Without one, middle and tilt share the zone of location.
+/// in half a zone. With a zone of orientation, each error of the middle has the mean square (T^2 - T_o^2) / (4 k^2),
+/// and that of the tilt is a multiple of T_o^2. Without a zone of orientation, middle and tilt share the zone of
+/// location.
 namespace poesy {
 
 /// Whether the part is a zone of orientation. Precondition: the part is a zone.
@@ -39,7 +40,7 @@ DrawnPart drawn_zone(const AllocatedPart& part, const ModelDescription& model, s
 
 /// The pairs of a zone of orientation and the zone of location of the same features, in the order of the locations. The
 /// drawing may leave out an orientation whose tolerance is chosen. It leaves out an orientation whose tolerance is
-/// given only where the location is so fine that the orientation adds no limit.
+/// given only if the location is so fine that the orientation does not limit the feature further.
 std::vector<Within> zone_pairs(std::span<const AllocatedPart> parts, const ModelDescription& model);
 
 }  // namespace poesy

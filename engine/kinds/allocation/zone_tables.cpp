@@ -33,8 +33,8 @@ std::string feature_text(const Result& found, std::size_t n) {
   return is_zone(found, n) ? found.zone_limbs(n) + " " + found.zone_feature(n) : found.part_names[n];
 }
 
-/// The sign that a drawing writes before the size of a zone: the sign of a diameter, or of the diameter of a sphere;
-/// nothing before a width.
+/// The sign before a tolerance on the drawing: plus-minus for a distance and for a part that is not a zone, the sign of
+/// the diameter of a cylinder or a sphere, nothing for the width of a zone.
 std::string_view before_number(const Result& found, std::size_t n) {
   if (!is_zone(found, n) || found.zone_shape(n) == "interval") return kPlusMinus;
   if (found.zone_shape(n) == "sphere") return kSphereDiameter;
@@ -47,7 +47,7 @@ std::string zone_text(const Result& found, std::size_t n) {
                      display_unit(dimension_of(unit)).name);
 }
 
-/// A cell with the zone as text and as tolerance frame, in mm. A distance has no frame.
+/// A cell with the tolerance of part n as text, and for a zone also as a tolerance frame. A distance has no frame.
 Cell zone_cell(const Result& found, std::size_t n) {
   Cell cell = text_cell(zone_text(found, n));
   if (!is_zone(found, n) || found.zone_shape(n) == "interval") return cell;
@@ -57,14 +57,14 @@ Cell zone_cell(const Result& found, std::size_t n) {
   return cell;
 }
 
-/// A column that is shown only in text, because the tolerance frame on the page already contains it.
+/// A column that is shown only in text output, because on a page the tolerance frame already shows its content.
 Column framed_column(std::string name, std::string heading) {
   Column column = text_column(std::move(name), std::move(heading));
   column.only_text = true;
   return column;
 }
 
-/// The size of a feature in the table: "500 mm", "60 x 40 mm", or the diameter of a round plane.
+/// The size of a feature in the table: "500 mm", "60 x 40 mm", or the diameter of a round plane. "-" if none is known.
 std::string over_text(const Result& found, std::size_t n) {
   if (!is_zone(found, n) || std::isnan(found.zone_length(n))) return "-";
   const Unit& unit = display_unit(Dimension::length);
@@ -81,8 +81,8 @@ bool are_of_one_feature(const Result& found, std::size_t a, std::size_t b) {
          found.zone_limbs(a) == found.zone_limbs(b);
 }
 
-/// Remarks on a part: that the orientation of its feature is not needed, that its tolerance is at a bound, or that the
-/// tolerance was given.
+/// Remarks on a part: that the drawing does not need the orientation of its feature, that its tolerance is at a bound,
+/// or that its tolerance was given.
 std::string remark(const Result& found, std::size_t n) {
   std::vector<std::string> words;
   for (std::size_t other = 0; other < found.parts(); ++other) {

@@ -28,7 +28,7 @@ using calibration::Components;
 using calibration::Matrix;
 using calibration::Vector;
 
-// Step of the differences by which typed parameters are differentiated, as a share of a fitted error's scale.
+// Step of the finite differences for the derivatives of typed parameters, as a share of the scale of a fitted error.
 constexpr double kStepOfTyped = 1e-6;
 
 Eigen::Index position(std::size_t at) { return static_cast<Eigen::Index>(at); }
@@ -50,7 +50,7 @@ std::vector<double> pose_of(const PoseSet& poses, std::size_t m) {
   return {pose.begin(), pose.end()};
 }
 
-/// The position of a measured quantity among the components of a displacement (kComponents).
+/// The index of a measured quantity in kComponents, the components of a displacement.
 std::size_t component_of(const std::string& quantity) {
   return static_cast<std::size_t>(std::ranges::find(calibration::kComponents, quantity) -
                                   calibration::kComponents.begin());
@@ -128,7 +128,7 @@ calibration::ExactMachine exact_machine(const MachineToCalibrate& machine) {
   }
 }
 
-/// What solves machines on one thread.
+/// The objects with which one thread solves machines.
 struct SolverOfThread {
   SolverOfThread(const MachineToCalibrate& machine, const calibration::CoordinateError& commanded)
       : exact(exact_machine(machine)), correction(exact, commanded) {}
@@ -139,7 +139,8 @@ struct SolverOfThread {
   calibration::DriveCorrection correction;
 };
 
-/// What is left at one pose: of the measured machine, and of the machines by which limits are judged.
+/// The displacements that remain at one pose after calibration: of the measured machine (none if the pose cannot be
+/// reached), and of the machines by which limits are judged (KeptLimits).
 struct LeftThere {
   std::optional<calibration::LeftAtPose> left;
   Matrix machines;
@@ -187,12 +188,12 @@ class Calibration {
   bool has_prior() const { return table_.prior == PriorKnowledge::tolerances; }
   std::size_t places() const { return numbers_of(frame()) + numbers_of(target()); }
 
-  /// The fitted numbers that the controller corrected while the machine was measured, SI.
+  /// The values of the fitted errors that the controller already corrected while the machine was measured, SI.
   std::vector<double> present() const {
     return table_.present.empty() ? std::vector(table_.fit.size(), 0.0) : table_.present;
   }
 
-  /// The measured poses. The drives are those of the controller's present parameters.
+  /// The measured poses, with the drive positions that the controller set by its present parameters.
   std::vector<calibration::MeasuredPose> measured_poses() {
     std::vector<calibration::MeasuredPose> poses;
     const std::vector<double> corrected = present();
@@ -211,8 +212,8 @@ class Calibration {
     return poses;
   }
 
-  /// Throws InputError if there are too few measured values for the numbers that are fitted. With a prior, they must
-  /// only be more than the numbers that place frame and target.
+  /// Throws InputError if there are too few measured values for the numbers that are fitted. With a prior, it is enough
+  /// that there are more values than numbers that place frame and target.
   void check_count() const {
     const std::size_t fitted = table_.fit.size() + places();
     const std::size_t measured = machine_.file.values.size();
@@ -228,8 +229,8 @@ class Calibration {
                      "measure at more poses, fit fewer, or take prior = \"tolerances\"");
   }
 
-  /// Throws InputError if a deviation of the platform is a length above a tenth of the mechanism's reach, in a known
-  /// frame: then the unit of its column is wrong, and a fit to it takes minutes.
+  /// Throws InputError if, in a known frame, a deviation of the platform is longer than a tenth of the mechanism's
+  /// reach. The unit of its column is then wrong, and a fit would take minutes.
   void check_deviations() const {
     constexpr double kMostOfReach = 0.1;
     if (frame() != calibration::Frame::known) return;
@@ -358,8 +359,8 @@ class Calibration {
     result.typed_sd = {{sd.size()}, sd};
   }
 
-  /// Estimates and covariance of all errors that have a tolerance or are fitted. If all noise is 0: only of the fitted
-  /// errors, with covariance 0. Empty if the fit of all errors does not converge.
+  /// Estimates and covariance of all errors that have a tolerance or are fitted; if all noise is 0, of the fitted
+  /// errors only, with covariance 0. None if the fit of all these errors does not converge.
   std::optional<calibration::Knowledge> knowledge_of_all() const {
     if (!weights_.is_noise) {
       const Eigen::Index all = fit_.theta.size() + fit_.phi.size();
@@ -416,8 +417,8 @@ class Calibration {
                       result.drive_shift.row(m).begin());
   }
 
-  /// Calls solve(solver, n) for each n = 0 .. count - 1 on a pool of threads, and keep(n, what it returned) in the
-  /// order of n.
+  /// Calls solve(solver, n) for each n = 0 .. count - 1 on a pool of threads, and passes each result to keep(n,
+  /// result), in the order of n.
   template <class Found, class Solve, class Keep>
   void over_poses(std::size_t count, const Solve& solve, const Keep& keep) {
     const RunOptions options{.threads = machine_.threads};
@@ -441,8 +442,9 @@ class Calibration {
   }
 
   /// For each candidate pose, the derivatives of the values that would be measured there with respect to the fitted
-  /// numbers, divided by the noise. A matrix has one row for each quantity that the file measures (such as the height),
-  /// and a column for each fitted error and each number of frame and target. Distances are left out.
+  /// numbers, divided by the noise. Each matrix has a row for each quantity in the table of measurements (such as the
+  /// height), and a column for each fitted error, scaled, and for each number of frame and target. Distances are left
+  /// out.
   std::vector<Matrix> rows_of_candidates() {
     std::vector<calibration::MeasuredValue> kinds;
     for (const calibration::MeasuredValue& value : measurement_.values()) {
@@ -524,7 +526,7 @@ class Calibration {
   calibration::Measurement measurement_;
   calibration::FitResult fit_;
   calibration::Inference inference_;
-  std::uint64_t solves_ = 0;  ///< number of solves of the pool's threads
+  std::uint64_t solves_ = 0;  ///< number of solves by the threads of over_poses()
 };
 
 }  // namespace

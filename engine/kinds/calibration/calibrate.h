@@ -14,16 +14,16 @@
 
 namespace poesy {
 
-/// A parameter of the controller that an operator types in, computed from the fitted errors.
+/// A parameter that an operator types into the controller. It is computed from the fitted errors.
 struct TypedNumber {
   std::string name;     ///< name in the controller
   std::string text;     ///< expression that computes it
   Dimension dimension;  ///< length, angle or number
-  /// The value of the parameter (SI) as a function of the fitted errors (SI).
+  /// The value of the parameter (SI) as a function of the values of the fitted errors (SI).
   std::function<double(std::span<const double> fitted)> value;
 };
 
-/// A machine that is calibrated from measurements. The objects to which its members refer must outlive it.
+/// A machine to calibrate, and its measurements. The objects to which the members refer must outlive this one.
 struct MachineToCalibrate {
   const Study& study;                     ///< the study, which has [analysis.calibration]
   const Model& model;                     ///< the model of its mechanism
@@ -31,12 +31,12 @@ struct MachineToCalibrate {
   const MachineFile& file;                ///< the table of measurements
   const PoseSet& measured_at;             ///< the pose of each row of the table of measurements
   const PoseSet& predicted_at;            ///< poses at which the remaining displacement is predicted
-  const PoseSet& candidates;              ///< poses among which the next ones to measure are chosen
-  const std::vector<TypedNumber>& typed;  ///< parameters for the controller
+  const PoseSet& candidates;              ///< poses from which the next poses to measure are chosen
+  const std::vector<TypedNumber>& typed;  ///< parameters of the controller to compute
   std::size_t threads = 1;                ///< number of threads; the result is the same for any number
 };
 
-/// The result of a calibration, and messages about it.
+/// The result of a calibration, and what a user must be told about the fit.
 struct Calibrated {
   CalibrationResult result;  ///< the result, in which the text and the hash of the table of measurements are not set
   bool converged = false;    ///< whether the fit converged
@@ -44,8 +44,9 @@ struct Calibrated {
   std::vector<std::string> warnings;  ///< warnings, as sentences for people
 };
 
-/// Fits the errors of [analysis.calibration] to the measurements. Throws InputError if they cannot be fitted: the noise
-/// is not stated, there are too few measured values, or the drives do not match the commanded coordinates.
+/// Fits the errors of [analysis.calibration] to the measurements. Throws InputError if they cannot be fitted, for
+/// instance because the noise is not stated, there are too few measured values, or the drives do not match the
+/// commanded coordinates.
 Calibrated calibrate(const MachineToCalibrate& machine);
 
 }  // namespace poesy

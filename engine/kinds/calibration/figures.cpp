@@ -30,7 +30,8 @@ std::vector<std::string> measured_columns(const CalibrationResult& found) {
   return columns;
 }
 
-/// [rows of the measurements] Numbers of the values of one column; NaN at rows without a value.
+/// [rows of the table of measurements] The numbers of the values in one column; NaN for rows without a value there.
+/// numbers: a number for each measured value.
 std::vector<double> at_rows(const CalibrationResult& found, const std::string& column,
                             const Array<double, axis::Value>& numbers) {
   std::vector<double> list(found.rows.size(), kNaN);
@@ -73,7 +74,7 @@ std::vector<Field> residual_fields(const CalibrationResult& found, ArrayPool& po
   return fields;
 }
 
-/// A map of the places where the machine was measured, coloured by residuals.
+/// A map of the poses at which the machine was measured, coloured by residuals.
 WorkspaceMap residual_map(const StoredResult& result, ArrayPool& pool) {
   const CalibrationResult& found = calibration_of(result);
   WorkspaceMap map;
@@ -110,7 +111,7 @@ void add_correlations(const CalibrationResult& found, Page& page) {
              "two far better than each of them.");
 }
 
-/// [poses] The root mean square of what remains of a component, including its uncertainty, SI.
+/// [poses] The root mean square of a component of the remaining displacement, including its standard deviation, SI.
 std::vector<double> left_rms_at_poses(const CalibrationResult& found, std::size_t component) {
   std::vector<double> list = column_at(found.left_mean, component);
   const std::vector<double> sd = column_at(found.left_sd, component);
@@ -118,7 +119,7 @@ std::vector<double> left_rms_at_poses(const CalibrationResult& found, std::size_
   return list;
 }
 
-/// [poses] The same of a length, SI.
+/// [poses] The root mean square length of the remaining displacement, including its uncertainty, m.
 std::vector<double> left_lengths_at_poses(const CalibrationResult& found, const LeftLength& length) {
   std::vector<double> list = left_rms_at_poses(found, length.first);
   for (const std::size_t next : {length.first + 1, length.first + 2}) {

@@ -18,8 +18,8 @@ using calibration::Vector;
 
 constexpr Eigen::Index kMachines = 1000;
 
-/// Positions of the components of the platform's displacement from which a response is computed; empty if it is not
-/// computed from them.
+/// Indices in kComponents of the components of the platform's displacement that give a response; empty if the response
+/// is not computed from them.
 std::vector<std::size_t> components_of(const ModelDescription& model, std::size_t response) {
   const Response& wanted = model.responses[response];
   std::vector<std::size_t> parts = wanted.components;
@@ -47,7 +47,7 @@ Matrix normal_scores(std::uint64_t seed, Eigen::Index rows) {
   return scores;
 }
 
-/// A square root R of a covariance that may be singular, for which R R^T is the covariance.
+/// A matrix R with R R^T = covariance. The covariance may be singular.
 Matrix root_of(const Matrix& covariance) {
   const linalg::EigenDecomposition found = linalg::eigen_decomposition(covariance);
   return found.vectors * found.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();

@@ -19,7 +19,7 @@
 namespace poesy {
 namespace {
 
-/// What the columns of the table of fitted errors are.
+/// A note that explains the columns of the table of fitted errors.
 std::string fitted_legend(const CalibrationResult& found) {
   return fmt::format(
       "estimate: the error that was fitted, in its unit; low, high: its {} interval; sd: its standard deviation; {}",
@@ -121,14 +121,14 @@ std::string estimate_text(const CalibrationResult& found, std::size_t n) {
          (unit.dimension == Dimension::number ? "" : " " + std::string(unit.name));
 }
 
-/// How sure the fitted values are: residuals, and what makes intervals less sure than they look.
+/// A text on how sure the fitted values are: the residuals, and what the intervals do not show.
 std::string sure_text(const CalibrationResult& found) {
   std::string text = sentence(residual_text(found));
   for (const std::string& note : unsure_notes(found)) text += " " + sentence(note);
   return text;
 }
 
-/// What has to be done before the fitted values are of use, if the measurements contradict them.
+/// Advice for measurements that contradict the fitted errors: what to do before the fitted values are used.
 std::string contradiction_text(const CalibrationResult& found) {
   const bool has_outlier = std::ranges::any_of(found.outlier.all(), [](auto is) { return is != 0; });
   return has_outlier ? "First find out why the outlier is so far off: the fitted values rest on it."
@@ -137,7 +137,7 @@ std::string contradiction_text(const CalibrationResult& found) {
              : "First find out why the measurements contradict the fitted errors: the noise, or their tolerances.";
 }
 
-/// The numbers for the controller, and what to measure next.
+/// Advice on the parameters to type into the controller, and on what to measure next.
 std::string advice_text(const CalibrationResult& found) {
   const std::string typed = typed_text(found);
   std::string text = sentence(typed.empty() ? "give the controller the fitted values" : typed);
@@ -149,11 +149,11 @@ std::string advice_text(const CalibrationResult& found) {
   if (unsure_notes(found).empty()) return text;
   text += found.unfitted > 0 ? " To know them better, fit more errors and measure more"
                              : " To know them better, measure more or more precisely";
-  if (found.noise_is_known == 0) return text + ".";  // next poses are not chosen then
+  if (found.noise_is_known == 0) return text + ".";  // without noise, no next poses are chosen
   return text + ": next = 5 in [analysis.calibration] names the poses that tell most.";
 }
 
-/// The fitted values, and the displacement that remains with them.
+/// A text with the fitted values, and with the displacement that remains after calibration.
 std::string found_text(const CalibrationResult& found) {
   constexpr std::size_t kMostValues = 6;
   std::vector<std::string> values;
@@ -167,14 +167,15 @@ std::string found_text(const CalibrationResult& found) {
                      left.empty() ? "" : "; " + left.front());
 }
 
-/// If the measurements contradict the fitted errors, the answer says so first, because all else rests on them.
+/// The summary at the top of the report. Warnings come first, because all other lines depend on the fitted errors.
 Answer answer(const StoredResult& result) {
   const CalibrationResult& found = calibration_of(result);
   Answer lines;
   for (const std::string& warning : calibration_warnings(found)) lines.emplace_back("Caution", sentence(warning));
   if (const std::string kept = kept_text(found); !kept.empty()) lines.emplace_back("Limits", sentence(kept));
   lines.emplace_back("Answer", sentence(found_text(found)));
-  lines.emplace_back("Measured", sentence("file " + measured_text(found)));  // the name keeps its small letters
+  // The text begins with "file", so that sentence() does not capitalise the name of the file.
+  lines.emplace_back("Measured", sentence("file " + measured_text(found)));
   lines.emplace_back("How sure", sure_text(found));
   lines.emplace_back("What to do", advice_text(found));
   return lines;
@@ -202,7 +203,7 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
           .quantities = {{"estimate", "estimate", std::move(units), std::move(values)}}};
 }
 
-/// A study cannot be of kind `calibration`, so there is nothing to run.
+/// Runs nothing, because no study has the kind `calibration`.
 std::optional<StudyResult> run_nothing(const StudyRun&) { return std::nullopt; }
 
 AtPose nothing_at_pose(const Study&) { return {0.0, "values", 0.0, "solves"}; }

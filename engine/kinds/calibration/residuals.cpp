@@ -15,17 +15,18 @@ namespace poesy {
 namespace {
 
 constexpr std::size_t kMostRows = 10;  // largest number of values in the table
-constexpr int kValueDigits = 6;        // significant digits: enough to show that measured and fitted values differ
+constexpr int kValueDigits = 6;  // significant digits of measured and fitted values, enough to show that they differ
 constexpr int kResidualDigits = 3;
 
-/// The size by which a value is ordered: its residual over its standard deviation, or its residual if the noise is not
-/// known. 0 if nothing else checks the value.
+/// The number by which values are ordered: the magnitude of the residual over its standard deviation, or of the
+/// residual if the noise is not known. 0 if no other value checks the value.
 double size_of(const CalibrationResult& found, std::size_t i) {
   const double size = std::abs(found.noise_is_known != 0 ? found.standardised(i) : found.residual(i));
   return std::isnan(size) ? 0.0 : size;
 }
 
-/// True if no other value checks this one: the fit follows it, so its residual has no standard deviation.
+/// True if no other measured value checks value i. The fit then reproduces the value exactly, so its residual has no
+/// standard deviation.
 bool is_unchecked(const CalibrationResult& found, std::size_t i) {
   return found.noise_is_known != 0 && std::isnan(found.standardised(i));
 }

@@ -25,15 +25,16 @@ using Coordinate = Axis<"coordinate">;    ///< Coordinates of a pose.
 using Typed = Axis<"typed">;              ///< Parameters for the controller.
 }  // namespace axis
 
-/// The calibration of one machine, SI. NaN if a number is not determined or not known. "In scaled numbers" means that
-/// each fitted error is divided by its scale.
+/// The calibration of one machine. Numbers are SI, and NaN if not determined or not known. "In scaled numbers" means
+/// that each fitted error is divided by its scale.
 struct CalibrationResult {
   std::vector<NamedUnit> fitted;         ///< names and units of the fitted errors
   Array<double, axis::Fitted> estimate;  ///< estimated values of the fitted errors
   Array<double, axis::Fitted> sd;        ///< standard deviations of the estimates
   Array<double, axis::Fitted> low;       ///< lower ends of the confidence intervals of the estimates
-  Array<double, axis::Fitted> high;      ///< upper ends of these intervals
-  /// Scale of each fitted error: the standard deviation that the tolerances give it, or else a usual size.
+  Array<double, axis::Fitted> high;      ///< upper ends of the confidence intervals of the estimates
+  /// Scale of each fitted error: the standard deviation that follows from the tolerances, or a usual size
+  /// (FittedColumns).
   Array<double, axis::Fitted> scale;
   std::uint64_t has_tolerances = 0;                            ///< 1 if all scales follow from tolerances, otherwise 0
   Array<double, axis::Fitted, axis::OtherFitted> covariance;   ///< covariance of the estimates
@@ -50,29 +51,32 @@ struct CalibrationResult {
 
   std::vector<std::string> values;       ///< names of the measured values
   std::vector<std::string> value_units;  ///< SI units of the measured values
-  /// Position of each value's row in the table of measurements.
+  /// Index of the row of each value in the table of measurements.
   Array<std::uint64_t, axis::Value> value_row;
-  /// For a distance: position of the row of the other pose. For any other value: the same as value_row.
+  /// For a distance: index of the row of the other pose. For any other value: equal to value_row.
   Array<std::uint64_t, axis::Value> value_to;
   std::vector<std::string> rows;  ///< names of the rows of the table of measurements
-  /// The pose of each row, in its coordinates, SI.
+  /// The pose of each row, in the pose coordinates of the model, SI.
   Array<double, axis::Measurement, axis::Coordinate> measured_at;
-  Array<double, axis::Value> measured;       ///< measured values
-  Array<double, axis::Value> value_sd;       ///< standard deviations of the measured values
-  Array<double, axis::Value> residual;       ///< measured minus fitted values
-  Array<double, axis::Value> leverage;       ///< leverage of each value in the fit, from 0 to 1
-  Array<double, axis::Value> standardised;   ///< each residual divided by its standard deviation
-  Array<std::uint8_t, axis::Value> outlier;  ///< 1 for outliers
+  Array<double, axis::Value> measured;  ///< measured values
+  Array<double, axis::Value> value_sd;  ///< standard deviations of the measured values
+  Array<double, axis::Value> residual;  ///< measured minus fitted values
+  /// Leverage of each value (diagonal of the projector on the fitted values), from 0 to 1.
+  Array<double, axis::Value> leverage;
+  /// Each residual divided by its own standard deviation; NaN if no other value checks the value.
+  Array<double, axis::Value> standardised;
+  Array<std::uint8_t, axis::Value> outlier;  ///< 1 for outliers, otherwise 0
   std::uint64_t measured_poses = 0;          ///< number of rows of the table of measurements
   std::uint64_t distances = 0;               ///< number of distances among the values
 
-  double rms = kNaN;            ///< root mean square of residuals divided by the noise
-  double chi_square = kNaN;     ///< weighted sum of squared residuals, including the prior
-  std::uint64_t dof = 0;        ///< degrees of freedom of chi_square
-  double p = kNaN;              ///< p-value: probability of a larger chi_square if only noise remains
-  double outlier_limit = kNaN;  ///< a value is an outlier if the magnitude of its standardised residual is above this
-  std::uint64_t rank = 0;       ///< number of independent combinations of fitted errors that the measurement determines
-  /// Number of independent combinations of the numbers of frame and target that the measurement determines.
+  double rms = kNaN;         ///< root mean square of residuals divided by the noise
+  double chi_square = kNaN;  ///< weighted sum of squared residuals, including the prior
+  std::uint64_t dof = 0;     ///< degrees of freedom of chi_square
+  double p = kNaN;           ///< p-value: probability of a larger chi_square if the residuals are only noise
+  /// A value is an outlier if the magnitude of its Inference::outlier_score is above this.
+  double outlier_limit = kNaN;
+  std::uint64_t rank = 0;  ///< number of independent combinations of fitted errors that the measurement determines
+  /// Number of independent combinations of the numbers in `frame` that the measurement determines.
   std::uint64_t frame_rank = 0;
   /// Number of combinations of fitted errors whose effect on the measured values is below the noise.
   std::uint64_t below_noise = 0;
@@ -84,42 +88,45 @@ struct CalibrationResult {
   double O5 = kNaN;         ///< observability index of Sun and Hollerbach
   double condition = kNaN;  ///< ratio of the largest singular value to the smallest one above rounding
 
-  std::vector<std::string> frame_parts;  ///< names of the numbers that place frame and target
-  Array<double, axis::FramePart> frame;  ///< estimates of these numbers
+  /// Names of the numbers that place the measuring frame and the target: m, rad, or slopes.
+  std::vector<std::string> frame_parts;
+  Array<double, axis::FramePart> frame;  ///< estimates of the numbers in `frame_parts`
 
-  Array<double, axis::Pose, axis::Moved> left_mean;    ///< expected displacement of the platform that remains with the
-                                                       ///< calibrated controller
-  Array<double, axis::Pose, axis::Moved> left_sd;      ///< standard deviation of the remaining displacement
-  std::vector<NamedUnit> drives;                       ///< names and units of the drives
-  Array<double, axis::Pose, axis::Drive> drive_shift;  ///< change of each drive by the calibrated controller
+  /// Expected displacement of the platform that remains with the calibrated controller, rad or m.
+  Array<double, axis::Pose, axis::Moved> left_mean;
+  Array<double, axis::Pose, axis::Moved> left_sd;  ///< standard deviation of the remaining displacement
+  std::vector<NamedUnit> drives;                   ///< names and units of the drives
+  /// Change of each drive's position by the calibrated controller, rad or m.
+  Array<double, axis::Pose, axis::Drive> drive_shift;
   std::uint64_t unfitted = 0;  ///< number of errors with a tolerance minus the number of fitted errors; 0 if negative
   double kept = kNaN;          ///< probability that the calibrated machine keeps all limits (KeptLimits)
   std::uint64_t left_in_device_frame = 0;  ///< 1 if the remaining displacement is in the frame of the measuring device,
                                            ///< 0 if in the base frame
 
   Array<double, axis::Next, axis::Coordinate> next_pose;  ///< poses recommended for the next measurement
-  /// Information in bits that each pose adds to the measurements and the poses before it.
+  /// Information, in bits, that each recommended pose adds to the measurements and the recommended poses before it.
   Array<double, axis::Next> gain;
-  Array<std::uint64_t, axis::Next> candidate;  ///< positions of these poses among the candidates
+  Array<std::uint64_t, axis::Next> candidate;  ///< indices of the recommended poses among the candidates
 
   std::vector<NamedUnit> typed;              ///< parameters for the controller; `description` is the expression
-  Array<double, axis::Typed> typed_nominal;  ///< values of these parameters without errors
-  /// Values of these parameters while the machine was measured: with the errors that the controller already corrected.
+  Array<double, axis::Typed> typed_nominal;  ///< values of the parameters if the machine had no errors
+  /// Values of the parameters while the machine was measured, which follow from the errors that the controller already
+  /// corrected.
   Array<double, axis::Typed> typed_present;
-  Array<double, axis::Typed> typed_value;  ///< values of these parameters with the estimated errors
-  Array<double, axis::Typed> typed_sd;     ///< standard deviations of the values
+  Array<double, axis::Typed> typed_value;  ///< values of the parameters for the estimated errors
+  Array<double, axis::Typed> typed_sd;     ///< standard deviations of typed_value
 
   std::string file;         ///< name of the table of measurements
-  std::string file_text;    ///< content of that table
-  std::string file_sha256;  ///< SHA-256 hash of that content
+  std::string file_text;    ///< content of the table of measurements
+  std::string file_sha256;  ///< SHA-256 hash of file_text
 };
 
-/// True if a value is a distance between the platform at two poses.
+/// True if a value is the distance between the places of the platform at two poses.
 inline bool is_distance(const CalibrationResult& found, std::size_t value) {
   return found.value_to(value) != found.value_row(value);
 }
 
-/// The names on the axis `moved`: components of a displacement.
+/// The names on the axis `moved`: components of a displacement (kComponents).
 std::vector<std::string> moved_names();
 
 /// The calibration in a result. Precondition: the result is of kind `calibration`.

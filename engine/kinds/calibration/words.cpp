@@ -16,11 +16,11 @@
 namespace poesy {
 namespace {
 
-// With a smaller p-value, a text says that the measurements contradict the fitted errors.
+// If the p-value is smaller than this, the measurements contradict the fitted errors.
 constexpr double kContradiction = 0.01;
-// A text says that estimates move together if the magnitude of their correlation is at least this.
+// Two estimates move together if the magnitude of their correlation is at least this.
 constexpr double kTogether = 0.95;
-constexpr std::size_t kAngles = 3;  // components of a displacement that are angles and come before the lengths
+constexpr std::size_t kAngles = 3;  // number of components of a displacement that are angles; they come first
 
 std::string some(const CalibrationResult& found, const std::vector<std::size_t>& numbers) {
   std::vector<std::string> names;
@@ -28,7 +28,7 @@ std::string some(const CalibrationResult& found, const std::vector<std::size_t>&
   return some_names(names, 18);
 }
 
-/// Sentences about the combinations of fitted errors that the measurement cannot determine.
+/// Clauses on the combinations of fitted errors that the measurement cannot determine.
 std::vector<std::string> unseen_notes(const CalibrationResult& found) {
   const auto k = static_cast<Eigen::Index>(found.fitted.size());
   calibration::Matrix projector(k, k);
@@ -52,7 +52,7 @@ std::vector<std::string> unseen_notes(const CalibrationResult& found) {
   return notes;
 }
 
-/// Sentences about groups of errors whose estimates are correlated.
+/// Clauses on groups of fitted errors whose estimates are correlated.
 std::vector<std::string> together_notes(const CalibrationResult& found) {
   std::vector<std::string> notes;
   std::vector<bool> listed(found.fitted.size(), false);
@@ -86,7 +86,7 @@ std::vector<std::string> together_notes(const CalibrationResult& found) {
   return notes;
 }
 
-/// A clause on the directions that the measurements tell less about than the tolerances; empty if there are none.
+/// A clause on the number of combinations of fitted errors with effects below the noise; empty if there are none.
 std::string below_noise_text(const CalibrationResult& found) {
   if (found.noise_is_known == 0 || found.below_noise == 0) return {};
   const bool one = found.below_noise == 1;
@@ -94,7 +94,7 @@ std::string below_noise_text(const CalibrationResult& found) {
                      found.fitted.size(), one ? "is" : "are", one ? "it" : "them");
 }
 
-/// A sentence on the errors that are not fitted. Precondition: there are some.
+/// A clause on the errors with a tolerance that are not fitted. Precondition: there are some.
 std::string unfitted_text(const CalibrationResult& found) {
   const std::string text =
       fmt::format("{} more {} a tolerance and {} not fitted", found.unfitted,
@@ -105,8 +105,8 @@ std::string unfitted_text(const CalibrationResult& found) {
          "narrow for them";
 }
 
-/// The root mean square over the poses of a component of the displacement that remains after calibration, including its
-/// uncertainty.
+/// The root mean square over the poses (SI) of a component of the displacement that remains after calibration,
+/// including its standard deviation.
 double left_rms(const CalibrationResult& found, std::size_t component) {
   double sum = 0.0;
   std::size_t poses = 0;
@@ -126,7 +126,7 @@ bool is_measured(const CalibrationResult& found, const std::string& component) {
   });
 }
 
-/// True if two components of the remaining displacement are equal at all poses, but for rounding.
+/// True if two components of the remaining displacement are equal at all poses, except for rounding.
 bool are_same(const CalibrationResult& found, std::size_t one, std::size_t other) {
   const auto same = [](double a, double b) {
     return std::abs(a - b) <= kLeftRounding || (std::isnan(a) && std::isnan(b));
@@ -246,7 +246,8 @@ std::string kept_text(const CalibrationResult& found) {
 }
 
 std::string typed_text(const CalibrationResult& found) {
-  // The half-width of an interval divided by the standard deviation. This ratio is the same for all fitted errors.
+  // The half-width of an estimate's interval divided by its standard deviation. This ratio is the same for all fitted
+  // errors.
   double quantile = kNaN;
   for (std::size_t k = 0; k < found.estimate.size() && std::isnan(quantile); ++k) {
     quantile = (found.high(k) - found.estimate(k)) / found.sd(k);

@@ -9,52 +9,54 @@
 
 namespace poesy {
 
-/// What was measured: "12 deviation_z, 3 distances"
+/// A text on what was measured: "12 deviation_z, 3 distances".
 std::string values_text(const CalibrationResult& found);
-/// What was measured and fitted: "heights.csv: 12 heights, 3 distances at 13 poses; 7 fitted errors, 8 degrees of
-/// freedom"
+/// A text on what was measured and fitted: "heights.csv: 12 deviation_z, 3 distances at 13 poses; 7 fitted errors, 8
+/// degrees of freedom".
 std::string measured_text(const CalibrationResult& found);
-/// The size of the residuals, and the result of the chi-square test. Empty if the noise is not known.
+/// A text on the size of the residuals and the result of the chi-square test. If the noise is 0, the text says so
+/// instead.
 std::string residual_text(const CalibrationResult& found);
-/// What makes intervals less sure than they look: directions below the noise, and errors that are not fitted.
+/// Clauses on what the intervals do not show: combinations of fitted errors with effects below the noise, and errors
+/// that are not fitted.
 std::vector<std::string> unsure_notes(const CalibrationResult& found);
-/// Sentences that name the estimates that are not determined, that are correlated, or that are below the noise.
+/// Clauses on estimates that are not determined or are correlated, on the condition number, on effects below the noise,
+/// and on errors that are not fitted.
 std::vector<std::string> estimate_notes(const CalibrationResult& found);
-/// A remaining displacement below this (m or rad) counts as rounding.
+/// A displacement that remains after calibration counts as rounding if it is below this (m or rad).
 inline constexpr double kLeftRounding = 1e-12;
 
 /// A component of the displacement that remains after calibration.
 struct LeftComponent {
-  std::size_t component;  ///< position on the axis `moved`
+  std::size_t component;  ///< index on the axis `moved`
   NamedUnit named;        ///< name and SI unit
-  double rms;             ///< root mean square over the poses, including the uncertainty, SI
+  double rms;             ///< root mean square over the poses, including the standard deviation of the prediction, SI
 };
 
-/// The components of the remaining displacement that are more than rounding. Those of the tool point are left out if
-/// they equal those of P, because there is no tool or the platform does not turn.
+/// The components of the remaining displacement that are more than rounding. A component of the tool point is left out
+/// if it equals that of the platform's origin P, because there is no tool or the platform does not turn.
 std::vector<LeftComponent> left_components(const CalibrationResult& found);
 
-/// The length of the remaining displacement of the tool point (without a tool: of the platform's origin) over the
-/// poses, including the uncertainty, SI.
+/// The length of the remaining displacement of the tool point, or of the platform's origin if there is no tool.
 struct LeftLength {
   NamedUnit named;    ///< "tip_position" or "position"
-  std::size_t first;  ///< position of its x component on the axis `moved`; y and z follow
-  double rms;         ///< root mean square over the poses
+  std::size_t first;  ///< index of the x component on the axis `moved`; y and z follow
+  double rms;         ///< root mean square over the poses, including the standard deviation of the prediction, m
 };
 
 /// The length of the remaining displacement; none if that displacement is only rounding.
 std::optional<LeftLength> left_length(const CalibrationResult& found);
 
-/// Sentences about the displacement that remains after calibration.
+/// Clauses on the displacement that remains after calibration, and on the limits.
 std::vector<std::string> left_notes(const CalibrationResult& found);
-/// A text on the probability that the machine keeps the limits; empty without limits.
+/// A clause on the probability that the machine keeps the limits; empty if that is unknown or there are no limits.
 std::string kept_text(const CalibrationResult& found);
-/// "to type in: delta_radius 95.0000 -> 95.1139 +- 0.1394 mm", from the value while the machine was measured to the new
-/// one; empty without numbers for the controller.
+/// The parameters to type into the controller, from the value while the machine was measured to the new one: "to type
+/// in: delta_radius 95.0000 -> 95.1139 +- 0.1394 mm". Empty without such parameters.
 std::string typed_text(const CalibrationResult& found);
-/// Whether the measurements contradict the fitted errors by the chi-square test.
+/// Whether the measurements contradict the fitted errors by the chi-square test, which needs known noise.
 bool is_contradicted(const CalibrationResult& found);
-/// Warnings about contradictions, outliers, and estimates far outside their tolerances.
+/// Warnings about outliers, measurements that contradict the fitted errors, and estimates far outside their tolerances.
 std::vector<std::string> calibration_warnings(const CalibrationResult& found);
 
 }  // namespace poesy

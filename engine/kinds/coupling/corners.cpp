@@ -14,8 +14,8 @@ namespace {
 /// The largest number of samples that are solved together.
 constexpr std::size_t kBlock = 256;
 
-/// The search also tries weighted sums of several responses. With more sums than this, no further response is added to
-/// them. The three components of a vector have 13 sums.
+/// The search also tries sums and differences of responses (CornerSearch::directions). No further response is combined
+/// once there are more sums than this. The three components of a vector have 13 sums.
 constexpr std::size_t kMostSums = 13;
 
 Signs opposite(Signs signs) {
@@ -109,7 +109,7 @@ std::vector<CornerSearch::Direction> CornerSearch::directions(const ModelDescrip
       const std::size_t before = sums.size();
       for (std::size_t n = 0; n < before; ++n) {
         for (const double weight : {1.0, -1.0}) {
-          // Not needed: for each sum, the opposite signs are tried as well.
+          // A sum that begins with weight -1 is not needed, because the opposite signs are tried for each sum.
           if (weight < 0.0 && sums[n].empty()) continue;
           Direction more = sums[n];
           more.emplace_back(r, weight);

@@ -15,8 +15,8 @@
 #include "engine/run/result.h"
 #include "engine/study/poses/pose_selection.h"
 
-/// Searches the worst case of error sources whose signs are unknown. Each block of errors (error_blocks()) has its size
-/// with either sign; a corner is a choice of the sign of each block.
+/// Searches the worst case of error sources whose signs are unknown. The errors of a block (error_blocks()) have their
+/// sizes, all with the same sign; a corner is a choice of the sign of each block.
 namespace poesy {
 
 namespace axis {
@@ -30,9 +30,9 @@ using Signs = std::string;
 struct CornerTable {
   CornerTable(const CouplingStudy& study, const ModelDescription& model);  ///< Lists the blocks of a study's sources.
 
-  std::vector<FactorIndex> factors;              ///< errors of the study (coupling_factors)
-  std::vector<std::vector<std::size_t>> blocks;  ///< blocks of all sources; a block is a list of positions in `factors`
-  /// [subsets] Blocks of each subset of sources, as positions in `blocks`.
+  std::vector<FactorIndex> factors;              ///< errors of the study, see coupling_factors()
+  std::vector<std::vector<std::size_t>> blocks;  ///< blocks of all sources; a block is a list of indices in `factors`
+  /// [subsets] Blocks of each subset of sources, as indices in `blocks`.
   std::vector<std::vector<std::size_t>> subsets;
   std::vector<std::vector<double>> size_of_error;  ///< [sizes][errors] size of each error of the study, SI
 
@@ -42,7 +42,7 @@ struct CornerTable {
 
 /// The worst corners (choices of the sign of each block) of a subset of sources at one size and pose.
 struct WorstCorners {
-  std::vector<double> value;  ///< [responses] largest |response| over the solved corners; NaN if none was solved
+  std::vector<double> value;  ///< [responses] largest |response| over the solved corners, SI; NaN if none was solved
   /// [responses] Signs of the blocks of errors at the corner that gives `value`; empty if none was solved.
   std::vector<Signs> signs;
   std::uint64_t tried = 0;     ///< number of corners that were tried
@@ -60,9 +60,9 @@ struct CornersAtPose {
 /// add up to first order, and the opposite signs. It does the same for sums and differences of responses with a sign
 /// that share a unit (ModelDescription::signed_headline), because a norm may be largest between the axes of its
 /// components. It also tries the corner with all signs positive. Then it flips the sign of each single block at the
-/// worst corner so far, until no flip makes the response worse by more than rounding. A corner counts if it is solved
-/// (model/status.h); otherwise it cannot be assembled, or its solution was not found. The result is not a bound: a
-/// subset with B blocks has 2^B corners, of which about B are tried for each response. The result depends only on the
+/// worst corner so far, until no flip makes the response worse by more than rounding. Only corners that are solved
+/// (model/status.h) count; the others cannot be assembled, or their solution was not found. The result is not a bound:
+/// a subset with B blocks has 2^B corners, of which about B are tried for each response. The result depends only on the
 /// arguments. Owns the scratch memory of one thread.
 class CornerSearch {
  public:
@@ -74,15 +74,15 @@ class CornerSearch {
   CornersAtPose operator()(std::size_t pose, std::size_t size);
 
  private:
-  /// The corners of a subset that were tried or wait to be tried.
+  /// The corners of a subset of sources that were tried or wait to be tried.
   struct Tried {
-    std::unordered_map<Signs, std::size_t> known;  ///< position of each corner in `signs`
-    std::vector<Signs> signs;                      ///< corners in the order in which they were tried
-    /// [corners][responses] magnitude of each response; NaN if the corner is not solved.
+    std::unordered_map<Signs, std::size_t> known;  ///< index of each corner in `signs`
+    std::vector<Signs> signs;                      ///< corners in the order in which they are tried
+    /// [corners][responses] Magnitude of each response, SI; NaN if the corner is not solved.
     std::vector<std::vector<double>> magnitude;
 
-    /// Position of the corner at which a response has the largest magnitude. A later corner replaces an earlier one
-    /// only if its magnitude is larger by more than rounding.
+    /// Index of the corner at which a response has the largest magnitude. A later corner replaces an earlier one only
+    /// if its magnitude is larger by more than rounding.
     std::size_t worst(std::size_t response, double rounding) const;
   };
   /// A weighted sum of responses, as pairs of response and weight.
@@ -114,17 +114,18 @@ class CornerSearch {
   std::size_t responses_;
   std::vector<Direction> directions_;  ///< weighted sums of responses, see the class comment
   std::unique_ptr<Evaluator> evaluator_;
-  std::vector<double> zeros_;     ///< a zero for each error of the model
-  std::vector<double> at_size_;   ///< [responses] rounding of each response at the size of errors that is being solved
-  std::vector<Tried> tried_;      ///< [subsets] corners of each subset
-  std::vector<Wanted> wanted_;    ///< corners that wait to be solved, in order
-  std::vector<double> values_;    ///< errors of the samples that are solved together
-  std::vector<double> outcomes_;  ///< responses of these samples
-  std::vector<SolveStatus> status_;    ///< how each of these samples ended
-  std::vector<std::uint32_t> counts_;  ///< iterations of each of these samples
+  std::vector<double> zeros_;  ///< a zero for each error of the model
+  /// [responses] Rounding of each response, SI, for the size of errors that is being solved.
+  std::vector<double> at_size_;
+  std::vector<Tried> tried_;           ///< [subsets] corners of each subset
+  std::vector<Wanted> wanted_;         ///< corners that wait to be solved, in the order of solving
+  std::vector<double> values_;         ///< errors of the samples that are solved together, SI
+  std::vector<double> outcomes_;       ///< responses of the samples that are solved together, SI
+  std::vector<SolveStatus> status_;    ///< how the solve of each of these samples ended
+  std::vector<std::uint32_t> counts_;  ///< iterations of the solve of each of these samples
 };
 
-/// The number of corners that are expected to be solved for one size at one pose.
+/// The expected number of corners that are solved for one size at one pose. responses: number of responses.
 double expected_corners(const CornerTable& table, std::size_t responses);
 
 }  // namespace poesy

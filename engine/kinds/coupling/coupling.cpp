@@ -63,8 +63,8 @@ void add_errors(const ErrorBlock& more, ErrorBlock& errors) {
   std::ranges::sort(errors);
 }
 
-/// The effects of a subset of sources at one size and pose. If an effect is NaN, so are all numbers that depend on it,
-/// except `largest`.
+/// The effects of a subset of sources on one response at one size and pose, SI. If an effect is NaN, all numbers that
+/// depend on it are NaN, except `largest`.
 struct Combination {
   double effect = 0.0;
   double sum = 0.0;
@@ -81,7 +81,8 @@ struct Combination {
   bool is_opposed(double rounding) const { return largest - std::abs(sum) > rounding; }
 };
 
-/// Combines the effects of the rows that belong to a subset. effects: [rows] effects of all rows at one size and pose.
+/// Combines the effects of the rows that belong to a subset. effects: [rows] responses to the errors of each row of
+/// CouplingRows at one size and pose.
 Combination combination(const CouplingRows& rows, std::size_t subset, std::span<const double> effects) {
   Combination found;
   found.effect = effects[subset];
@@ -97,8 +98,8 @@ Combination combination(const CouplingRows& rows, std::size_t subset, std::span<
   return found;
 }
 
-/// The largest magnitude of the values at these poses, and the first pose with this magnitude; NaN and -1 if there are
-/// no poses.
+/// The largest magnitude of the values at these poses, and the first pose with this magnitude; NaN and -1 if `poses` is
+/// empty. values: [all poses].
 std::pair<double, std::int64_t> largest_at(std::span<const double> values, std::span<const std::size_t> poses) {
   std::pair<double, std::int64_t> largest{kNaN, -1};
   for (const std::size_t m : poses) {
@@ -120,7 +121,7 @@ std::vector<std::string> size_names(const CouplingStudy& study) {
   return names;
 }
 
-/// The sizes of errors of one dimension; NaN if no error has this dimension.
+/// [sizes] The sizes of errors of one dimension (lengths or angles); NaN if no error has this dimension.
 Array<double, axis::Size> sizes_or_nan(const std::vector<double>& sizes, std::size_t count) {
   return {{count}, sizes.empty() ? std::vector<double>(count, kNaN) : sizes};
 }
@@ -176,13 +177,13 @@ class Composer {
   }
 
  private:
-  /// [poses x rows] One response at each pose to each set of errors (CouplingRows::errors).
+  /// [poses x rows] One response, SI, at each pose to each set of errors (CouplingRows::errors).
   using Effects = Array<double, axis::Pose, axis::Sample>;
 
   std::size_t rows() const { return rows_.errors.size(); }
   std::size_t sample(std::size_t z, std::size_t n) const { return z * rows() + n; }
 
-  /// The effects on a response of all sets of errors at a size; NaN if a solve does not count.
+  /// The effects of all sets of errors on response r at size z; NaN if a solve does not count.
   Effects effects_of(std::size_t r, std::size_t z) const {
     Effects effects({evaluation_.poses(), rows()});
     for (std::size_t m = 0; m < evaluation_.poses(); ++m) {
@@ -196,7 +197,7 @@ class Composer {
 
   void add_subset(std::size_t r, std::size_t z, std::size_t k, const Effects& effects) {
     const double rounding = found_.rounding(r, z);
-    std::vector<std::size_t> known;  // poses at which all numbers are known
+    std::vector<std::size_t> known;  // poses at which all numbers of the subset are known
     std::vector<double> interaction;
     std::size_t opposed = 0;
     for (std::size_t m = 0; m < evaluation_.poses(); ++m) {
@@ -236,7 +237,7 @@ class Composer {
   CouplingResult found_;
 };
 
-/// Reports the progress of two stages as that of one run: first the table of errors, then the corners.
+/// Reports the progress of the two stages of a run as one: first the table of errors, then the search for corners.
 class TwoStages {
  public:
   TwoStages(const StudyRun& run, double expected_corners) : run_(run), expected_(expected_corners) {}
@@ -325,8 +326,8 @@ Outlook coupling_outlook(const Study& study, const Model& model, const PoseSet& 
   const bool searches = coupling.worst_case == UnknownSigns::search;
   const std::size_t of_corners = searches ? curve + 2 * sizeof(std::uint64_t) * cells * rows.subsets.size() : 0;
   const std::size_t result = 6 * curve + of_corners + cells * sizeof(SolveCounts);
-  // While the result is computed, the outcomes and all curves except one are in memory. While it is written, its lists
-  // are freed one by one.
+  // While the result is computed, the outcomes and all curves except the interaction are in memory. While the result is
+  // written, its lists are freed one by one.
   const std::size_t composing = outcomes + 5 * curve + of_corners;
   Outlook expected{.solves = counted_things(coupling.sizes(), "sizes x ") +
                              counted_things(rows.errors.size(), "sets of errors x ") +
@@ -383,7 +384,8 @@ CouplingRows coupling_rows(const CouplingStudy& study, const ModelDescription& m
       for (const ErrorBlock& block : blocks) add_errors(block, rows.errors[k]);
     }
     std::vector<std::size_t>& own = rows.block_rows.emplace_back();
-    // Subset s has only this source, which has only this block, so the block needs no further row.
+    // Row s is the subset of source s alone. If the source has one block, this row has the block alone, so no row is
+    // added.
     if (blocks.size() == 1) own.push_back(s);
     for (const ErrorBlock& block : blocks) {
       if (blocks.size() == 1) break;

@@ -17,10 +17,11 @@
 
 namespace poesy {
 
-/// A source of errors: errors whose joint effect the study computes.
+/// A source of errors: a named list of errors whose joint effect the study computes.
 struct ErrorSource {
-  std::string name;                  ///< name in tables; '+' joins it to the names of other sources
-  std::vector<FactorIndex> factors;  ///< errors that the study names; the ErrorPattern may exclude some
+  std::string name;  ///< name in tables; '+' joins it to the names of other sources
+  /// Errors that the study lists for the source; the ErrorPattern may exclude some of them.
+  std::vector<FactorIndex> factors;
 };
 
 /// A rule that states which errors of a source are not zero, and which of these have the same sign.
@@ -32,9 +33,9 @@ struct ErrorPattern {
     independent  ///< all limbs or components, each with its own sign
   };
 
-  Choice limbs = Choice::all;       ///< which limbs have errors
+  Choice limbs = Choice::all;       ///< which limbs have errors, and with which signs
   std::size_t limb = 0;             ///< the limb for `some`, counted from 1
-  Choice components = Choice::all;  ///< which components of an error vector are not zero
+  Choice components = Choice::all;  ///< which components of an error vector are not zero, and with which signs
   std::vector<std::string> axes;    ///< the components for `some`: "x", "y", "z"; scalar errors are always included
 };
 
@@ -48,8 +49,8 @@ std::string_view name(UnknownSigns signs);  ///< The word for this choice in stu
 
 /// The options of a coupling study.
 struct CouplingStudy {
-  std::vector<double> linear;        ///< [sizes] sizes of errors that are lengths, m; empty if there are none
-  std::vector<double> angular;       ///< [sizes] sizes of errors that are angles, rad; empty if there are none
+  std::vector<double> linear;        ///< [sizes] sizes of errors that are lengths, m; empty if no error is a length
+  std::vector<double> angular;       ///< [sizes] sizes of errors that are angles, rad; empty if no error is an angle
   ErrorPattern pattern;              ///< which errors of each source are not zero, and which have the same sign
   std::vector<ErrorSource> sources;  ///< the sources; an error is in one source only
   UnknownSigns worst_case = UnknownSigns::search;  ///< whether worst cases are searched
@@ -65,7 +66,7 @@ struct CouplingStudy {
 /// The kind of study that computes the effects of error sources of fixed size, alone and together.
 extern const StudyKind kCouplingStudy;
 
-/// Errors that have the same size and sign while all others are zero, in the order of the model.
+/// Errors that always have the same sign, in the order of the model.
 using ErrorBlock = std::vector<FactorIndex>;
 
 /// The blocks into which a pattern divides the errors of a source, ordered by limb, frame, dimension and axis. A source
@@ -83,7 +84,7 @@ std::vector<std::vector<std::size_t>> source_subsets(std::size_t sources);
 struct CouplingRows {
   /// [subsets] Sources of each subset; row k has the errors of subset k.
   std::vector<std::vector<std::size_t>> subsets;
-  /// [sources] Positions of the rows that have one block of the source each.
+  /// [sources] Indices of the rows that have a single block of the source, one row for each block.
   std::vector<std::vector<std::size_t>> block_rows;
   std::vector<ErrorBlock> errors;  ///< [rows] errors of each row
 };
@@ -122,11 +123,11 @@ struct CouplingResult {
   Curves effect;           ///< response to all errors of the subset at once
   Curves sum;              ///< sum of the responses to each source alone
   Curves interaction;      ///< effect - sum
-  Curves first_order_sum;  ///< sum of |effect of each block alone|
+  Curves first_order_sum;  ///< sum of |response to each block alone|
   Curves worst_case;       ///< largest |response| over the tried corners; NaN if no corner is solved
   Curves root_sum_square;  ///< root of the sum of squares of the responses to each block alone
-  Curves cancellation;     ///< cancellation between sources, from 0 to 1
-  Array<double, axis::Response, axis::Size> rounding;  ///< responses up to this magnitude are rounding
+  Curves cancellation;     ///< cancellation between sources, from 0 to 1, without unit
+  Array<double, axis::Response, axis::Size> rounding;  ///< responses up to this magnitude are only rounding
 
   // Summaries over the poses at which all numbers above are known. If there is no such pose, values are NaN and poses
   // -1.
@@ -151,7 +152,8 @@ struct CouplingResult {
   Array<std::int64_t, axis::Response, axis::Size, axis::Subset, axis::Factor> worst_case_signs;
   /// First pose with a corner that is not solved; -1 if there is none.
   Array<std::int64_t, axis::Size, axis::Subset> unsolved_pose;
-  /// The sign of each error at the first corner that is not solved; 0 if all corners are solved.
+  /// The sign of each error at the first corner that is not solved: 1, -1, or 0 if the error is zero. 0 if all corners
+  /// are solved.
   Array<std::int64_t, axis::Size, axis::Subset, axis::Factor> unsolved_signs;
   Array<SolveCounts, axis::Size, axis::Pose> solves;  ///< how the solves of all sets of errors and all corners ended
 
@@ -161,7 +163,8 @@ struct CouplingResult {
   SolveCounts total() const { return total_of(solves.all()); }
 };
 
-/// Whether worst cases were searched. Results of version 0.2.0 have no worst cases, only first-order sums.
+/// Whether worst cases were searched. Studies with UnknownSigns::sum, and results of version 0.2.0, have only
+/// first-order sums.
 inline bool has_worst_cases(const CouplingResult& found) { return !found.worst_case.empty(); }
 
 /// Computes the effects of error sources alone and together (San et al. 2023, Sections 5.2.1 and 5.2.2), at each size
@@ -174,8 +177,8 @@ inline bool has_worst_cases(const CouplingResult& found) { return !found.worst_c
 ///     first_order_sum  sum over the blocks of S of |effect of the block alone| (see error_blocks)
 ///     worst_case       the largest |response| that was found with either sign of each block (coupling/corners.h)
 ///     root_sum_square  root of the sum over the blocks of S of (effect of the block alone)^2
-///     cancellation     1 - |sum| / (sum over the sources in S of |effect of each alone|): 0 where no source opposes
-///                      another or where no more than rounding is cancelled, 1 where they cancel
+///     cancellation     1 - |sum| / (sum over the sources in S of |effect of each alone|): 0 if no source opposes
+///                      another or if no more than rounding is cancelled, 1 if they cancel
 ///
 /// To first order, first_order_sum is the largest effect of the blocks if their signs are unknown, and root_sum_square
 /// is the root mean square effect if both signs of each block are equally likely. Neither first_order_sum nor
@@ -187,8 +190,8 @@ inline bool has_worst_cases(const CouplingResult& found) { return !found.worst_c
 /// by more than rounding.
 ///
 /// evaluation: result of run_evaluation() for coupling_table() of the study. A solve that does not count (see counts())
-/// makes every number that depends on it NaN, and is counted in `solves`. rounding: see coupling_rounding(). Worst
-/// cases are empty until add_worst_cases() adds them.
+/// makes every number that depends on it NaN, and is counted in `solves`. rounding: see coupling_rounding(). The arrays
+/// of worst cases are empty until add_worst_cases() sets them.
 CouplingResult coupling_result(EvaluationResult evaluation, const CouplingStudy& study, const ModelDescription& model,
                                NotConverged policy, Array<double, axis::Response, axis::Size> rounding);
 
@@ -199,8 +202,8 @@ Array<double, axis::Response, axis::Size> coupling_rounding(const CouplingStudy&
 /// The names of the sources in each subset, joined: "FS", "T", "FS+T".
 std::vector<std::string> subset_names(std::span<const ErrorSource> sources);
 
-/// Positions of the responses on which no source has an effect larger than rounding, at all sizes and poses at which
-/// the effects are known. Precondition: the effect of some source is known.
+/// Indices of the responses on which no source has an effect larger than rounding at any size and pose with known
+/// effects. Precondition: the effect of some source is known.
 std::vector<std::size_t> responses_without_effect(const CouplingResult& found);
 
 /// The coupling result in a stored result. Precondition: the result is of kind `coupling`.

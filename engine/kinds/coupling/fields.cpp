@@ -74,8 +74,8 @@ std::vector<std::uint8_t> members(std::size_t sources) {
   return list;
 }
 
-/// Writes to the result file, for each error, the positions of its source and of its block. The errors of a source are
-/// divided into blocks; those of a block have the same sign.
+/// Writes to the result file, for each error, the index of its source and the index of its block in this source. The
+/// errors of a block have the same sign.
 void add_membership(ResultBuilder& result, const Study& study) {
   const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
   std::map<FactorIndex, std::pair<std::size_t, std::size_t>> places;
@@ -104,7 +104,8 @@ void add_choices(ResultBuilder& result, const Study& study, const CouplingResult
   result.show_axes("/coupling", {"source", "factor"});
 }
 
-/// The lines of a table: one for each size, subset and pose, or for each size, subset and error.
+/// The layout of tables with a line for each size, subset and pose. In a table with a line for each error, errors take
+/// the place of poses.
 using SubsetLines = AxisLayout<axis::Size, axis::Subset, axis::Pose>;
 
 /// Appends columns with the sizes of the errors to the table.
@@ -117,7 +118,7 @@ void append_size_columns(CsvTable& table, const CouplingResult& found, const Sub
   append("size_angular [rad]", found.angular);
 }
 
-/// A table with `repeated` lines for each size and subset, and with columns for both.
+/// A table with `repeated` lines for each size and subset, and with columns for the subset and the sizes.
 CsvTable subset_table(const StoredResult& result, const std::string& name, std::size_t repeated) {
   const CouplingResult& found = coupling_of(result);
   const SubsetLines lines({found.size_names.size(), found.subsets.size(), repeated});
@@ -128,8 +129,8 @@ CsvTable subset_table(const StoredResult& result, const std::string& name, std::
   return table;
 }
 
-/// Adds to the table a column for each response and each field of this type of array, unless the values follow from
-/// other columns.
+/// Adds to the table a column for each response and each field of the type AnArray. The field `sum` is left out,
+/// because it follows from effect and interaction.
 template <class AnArray>
 void append_response_columns(CsvTable& table, const StoredResult& result) {
   const CouplingResult& found = coupling_of(result);
@@ -197,8 +198,8 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
   add_solver(result, found.solves);
 }
 
-/// Completes a result that was read from a file of version 0.2.0. In such a file, `worst_case` is the first-order sum,
-/// corners are missing, and rounding is computed from printed digits.
+/// Completes a result that was read from a file of version 0.2.0. In such a file, `worst_case` is the first-order sum
+/// and corners are missing. The rounding is computed from the sizes of the errors.
 void read_older(CouplingResult& found) {
   if (!found.first_order_sum.empty()) {
     const bool searched = has_worst_cases(found);

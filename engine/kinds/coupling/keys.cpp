@@ -18,7 +18,7 @@ constexpr std::array<std::string_view, 6> kCouplingKeys{"linear",     "angular",
 using PatternChoice = ErrorPattern::Choice;
 
 constexpr std::size_t kFewestSources = 2;
-constexpr std::size_t kMostSources = 8;  // 255 subsets
+constexpr std::size_t kMostSources = 8;  // eight sources have 255 subsets
 
 /// Reads "all" or "independent".
 PatternChoice read_choice(const StudyValue& value) {
@@ -100,7 +100,8 @@ ErrorSource read_source(const StudySection& section, std::span<const ErrorSource
   return source;
 }
 
-/// The error sources that the model lists from the literature. Throws InputError at the section if it lists none.
+/// The error sources that the model lists from the literature. Throws InputError if it lists none, or if the pattern
+/// excludes all errors of one.
 std::vector<ErrorSource> usual_sources(const StudySection& analysis, const ModelDescription& model,
                                        const ErrorPattern& pattern) {
   constexpr std::string_view kNameThem =
@@ -165,7 +166,7 @@ std::string sizes_line(const Study& study) {
   return sizes.empty() ? "" : fmt::format("{} = {}\n", error_kind(kDimension), list_text(sizes));
 }
 
-/// Whether some source that the model lists has an error of this dimension.
+/// Whether a source that the model lists has an error of this dimension.
 bool has_source_of(const ModelDescription& model, Dimension dimension) {
   return std::ranges::any_of(model.sources, [&](const SourceSet& source) {
     return std::ranges::any_of(model.find_set(source.set)->factors,
@@ -247,8 +248,8 @@ void require_equal_numbers(const StudyValue& angular, const CouplingStudy& study
                "a run takes one of each, so write as many");
 }
 
-/// Throws InputError if two of the study's sizes are equal, for lengths and for angles. value: the linear or the
-/// angular sizes.
+/// Throws InputError if two runs have equal sizes of lengths and equal sizes of angles. value: the key `linear` or
+/// `angular`, to which the message points.
 void require_different_runs(const StudyValue& value, const CouplingStudy& study) {
   const auto same = [](const std::vector<double>& sizes, std::size_t a, std::size_t b) {
     return sizes.empty() || sizes[a] == sizes[b];
@@ -263,7 +264,7 @@ void require_different_runs(const StudyValue& value, const CouplingStudy& study)
 }
 
 /// Sets the sources that the model lists, if the study lists none. Throws InputError if an error of a source has no
-/// size.
+/// size, or if sizes are stated for a dimension that no error has.
 void complete_sources(const StudySection& analysis, const ModelDescription& model, CouplingStudy& study) {
   if (!analysis.find("sources")) study.sources = usual_sources(analysis, model, study.pattern);
   for (const Dimension dimension : {Dimension::length, Dimension::angle}) {

@@ -4,7 +4,7 @@
 
 namespace poesy {
 
-/// Runs and reports coupling studies: the effects of error sources of fixed size, alone and together.
+/// The kind of study `coupling`: the effects of error sources of fixed size, alone and together.
 extern const Kind kCouplingKind;
 
 /// How results of coupling studies are stored and reported.

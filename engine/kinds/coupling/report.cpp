@@ -105,7 +105,8 @@ Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
   return table;
 }
 
-/// Whether some response of the summary does not change if only this source has errors, at any pose and size.
+/// Whether there is a response of the summary that this source alone changes by no more than rounding, at all poses and
+/// sizes.
 bool does_nothing(const StoredResult& result, const std::string& source) {
   const CouplingResult& found = coupling_of(result);
   const auto k = static_cast<std::size_t>(std::ranges::find(found.subsets, source) - found.subsets.begin());
@@ -118,7 +119,8 @@ bool does_nothing(const StoredResult& result, const std::string& source) {
   });
 }
 
-/// Whether all limbs have the same errors. The stored study states this, because all its defaults are filled in.
+/// Whether all limbs have the same errors. The stored study always has the key `limbs`, because its defaults are filled
+/// in.
 bool same_in_all_limbs(const StoredResult& result) {
   return study_setting(result.study_text, "analysis", "limbs") == "\"all\"";
 }
@@ -198,7 +200,8 @@ class Curves {
   std::size_t sources() const { return std::min(found_.sources.size(), found_.subsets.size()); }
   std::size_t last() const { return found_.subsets.size() - 1; }
   const std::string& subset(std::size_t k) const { return found_.subsets[k]; }
-  /// Pairs of a response and a size. The last size comes first, because tables show it first.
+  /// Pairs of a response and a size. For each response, the last size comes first, because the page shows the tables of
+  /// this size.
   std::vector<std::pair<std::size_t, std::size_t>> panels() const {
     std::vector<std::pair<std::size_t, std::size_t>> list;
     for (const std::size_t r : figures_.responses()) {
@@ -219,7 +222,8 @@ class Curves {
     return all;
   }
 
-  /// One curve over the poses, in display units; a cancellation in percent.
+  /// Adds a curve over the poses to the page and returns its name. Values are in display units, cancellations in
+  /// percent.
   ArrayName curve(std::string_view what, const CouplingResult::Curves& values, std::size_t r, std::size_t z,
                   std::size_t k) const {
     const double unit = what == "cancellation" ? 0.01 : display(result_.responses[r]).si;
@@ -235,7 +239,7 @@ class Curves {
     }
   }
 
-  /// The curve of all sources together, then those of the other subsets with several sources.
+  /// The curve of all sources together, then the curves of the other subsets with several sources.
   std::vector<Series> subset_series(std::string_view what, const CouplingResult::Curves& values, std::size_t r,
                                     std::size_t z) const {
     std::vector<Series> list{{subset(last()), curve(what, values, r, z, last())}};
@@ -243,7 +247,8 @@ class Curves {
     return list;
   }
 
-  /// The curves of each source alone, of all sources together with their sum and interaction, and of the other subsets.
+  /// The curves of each source alone, of all sources together (effect, interaction, worst case, first-order sum, root
+  /// sum square), and of the other subsets.
   std::vector<Series> effect_series(std::size_t r, std::size_t z) const {
     std::vector<Series> list;
     for (std::size_t k = 0; k < sources(); ++k) {
@@ -270,8 +275,7 @@ class Curves {
   const PoseFigures& figures_;
 };
 
-/// Adds to the section the tables for the last size of the errors, and those for the other sizes, which are
-/// closed at first.
+/// Adds the tables of the last size to the section. The tables of the other sizes are folded: the reader opens them.
 void add_tables(const StoredResult& result, std::span<const Table> tables, Section& section) {
   const std::size_t shown = std::min(tables.size(), result.signed_headline.size());
   section.folded("The tables of the other sizes", tables.first(tables.size() - shown));
@@ -355,8 +359,8 @@ Answer answer(const StoredResult& result) {
   return lines;
 }
 
-/// The number by which it is judged which of two results is better: the largest effect of all sources together at the
-/// last size. It has no uncertainty, because errors are given.
+/// The figure of merit by which two results are compared: the largest effect of all sources together at the last size.
+/// Its interval has no width, because errors are not drawn.
 std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
   const CouplingResult& found = coupling_of(result);
   if (name.empty() || found.effect_max.empty()) return {};

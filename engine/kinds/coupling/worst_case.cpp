@@ -12,7 +12,8 @@
 namespace poesy {
 namespace {
 
-/// Reads or writes signs, one for each of this number of blocks of errors, or an empty list.
+/// Reads or writes the signs of a corner: one for each block of errors, or none if there is no corner. blocks: number
+/// of blocks.
 void signs_state(Archive& archive, Signs& signs, std::size_t blocks) {
   archive.text(signs);
   const auto is_sign = [](char sign) { return sign == '+' || sign == '-'; };
@@ -29,7 +30,8 @@ void place_state(Archive& archive, WorstCases::Place& place, std::size_t poses, 
   archive.expect((place.pose < 0) == place.signs.empty(), "has a corner without a pose");
 }
 
-/// Replaces `worst` by `later` if `later` has the larger value, or if `worst` is empty.
+/// Replaces `worst` by `later` if `later` has a larger value, or if `worst` has no corner. Does nothing if `later` has
+/// no corner.
 void take_worse(WorstCases::Place& worst, WorstCases::Place later) {
   if (later.signs.empty() || (worst.pose >= 0 && !(later.value > worst.value))) return;
   worst = std::move(later);
@@ -38,7 +40,7 @@ void take_first(WorstCases::Place& first, WorstCases::Place later) {
   if (first.pose < 0 && !later.signs.empty()) first = std::move(later);
 }
 
-/// The size and the pose of a unit of work.
+/// The indices of the size and the pose of work unit n.
 std::pair<std::size_t, std::size_t> size_and_pose(const CornerTable& table, std::size_t n) {
   return {n % table.size_of_error.size(), n / table.size_of_error.size()};
 }
@@ -61,7 +63,7 @@ struct CornerUnit : CornersAtPose {
   }
 };
 
-/// The worst cases for all responses, sizes of the errors, subsets of sources and poses, as they are collected.
+/// Accumulator of the worst cases for all responses, sizes of the errors, subsets of sources and poses.
 struct CornerSums : WorstCases {
   const CornerTable* table;
 
@@ -113,8 +115,8 @@ struct CornerSums : WorstCases {
       for (std::size_t r = 0; r < value.length<axis::Response>(); ++r) archive.real(value(r, z, k, m));
     }
   }
-  /// Reads or writes a corner and its pose. When it reads, take(place, read) merges what was read, which belongs to
-  /// later units, into the present one.
+  /// Reads or writes a corner and its pose. In reading, take(place, read) merges the corner that was read, which
+  /// belongs to later units, into `place`.
   template <class Take>
   void places_state(Archive& archive, std::size_t subset, Place& place, const Take& take) {
     Place read = archive.reads() ? Place() : place;
@@ -154,7 +156,7 @@ struct CornerJob {
   CornerSums sums() const { return {table, responses(), run.poses.size()}; }
 };
 
-/// Sets the signs of the errors at this corner.
+/// Sets the sign of each error at this corner: 1, -1, or 0 for an error outside the subset or if there is no corner.
 void fill_signs(const WorstCases::Place& place, std::size_t subset, const CornerTable& table,
                 std::span<std::int64_t> signs) {
   std::ranges::transform(table.signs_of_errors(subset, place.signs), signs.begin(),

@@ -20,7 +20,7 @@ constexpr const char* kLabels = "/evaluate/label";
 constexpr const char* kZeroErrors = "zero_error";
 constexpr const char* kWithinLimits = "/evaluate/within_limits";
 
-/// The words for Pairing in a result file: how poses and rows of errors are paired.
+/// The words in a result file for how poses and rows of errors are paired (Pairing).
 /// @{
 constexpr const char* kRowByRow = "row-by-row";
 constexpr const char* kEveryPoseWithEveryRow = "every-pose-with-every-row";
@@ -48,7 +48,7 @@ std::pair<std::size_t, std::size_t> solve_at(std::size_t first, std::size_t seco
   return {first, second};
 }
 
-/// Adds to the result file a dataset with one value for each solve. value(pose, sample) returns it.
+/// Adds to the result file a dataset with the number value(pose, sample) for each solve.
 template <h5::Number T, class Layout, class Value>
 void add_values(ResultBuilder& result, const std::string& name, const Layout& layout, const Value& value,
                 const Label& label) {
@@ -73,7 +73,8 @@ void add_details(ResultBuilder& result, const Evaluation& found, const AxisLayou
   if (found.solves.detail.empty()) return;
   const auto names = texts(found.details, &Detail::name);
   result.file().set_attribute("/evaluate", "details", std::span(names));
-  std::map<std::vector<std::string>, std::string> axis_of;  // additional outputs with the same components share an axis
+  // The axis of each list of component names. Additional outputs with equal lists share an axis.
+  std::map<std::vector<std::string>, std::string> axis_of;
   std::size_t first = 0;
   for (const Detail& detail : found.details) {
     const std::size_t width = detail.components.size();
@@ -182,8 +183,8 @@ void add_solves(ResultBuilder& result, const ModelDescription& model, const Eval
   write_fields(result, "/evaluate", kJointFields, solves);
 }
 
-/// Writes the group /errors of the file: the given errors, their pairing with poses, and the labels of the rows. rows:
-/// the name of the axis of rows.
+/// Writes the group /errors of the file: the rows of errors, their pairing with poses, and their labels. rows: name of
+/// the axis of rows.
 void add_errors(ResultBuilder& result, const Evaluation& found, const std::string& rows) {
   const bool row_by_row = found.pairing == Pairing::row_by_row;
   result.file().make_group("/errors");
@@ -200,8 +201,8 @@ void add_errors(ResultBuilder& result, const Evaluation& found, const std::strin
   result.file().set_attribute(kLabels, "column", found.labels.column);
 }
 
-/// Writes whether each row of errors is within all limits; nothing if the study states none. rows: the name of the axis
-/// of rows.
+/// Writes whether each row of errors is within all limits; writes nothing if the study states no limits. rows: name of
+/// the axis of rows.
 void add_within_limits(ResultBuilder& result, const Evaluation& found, const std::string& rows) {
   if (found.within_limits.empty()) return;
   result.add(kWithinLimits, {rows}, found.within_limits,
@@ -214,7 +215,7 @@ void check_rows(const std::vector<LimitVerdict>& limits, std::size_t rows) {
   if (!fits) throw h5::Error("/limits/tried is not the number of rows of errors");
 }
 
-/// Reads the labels of the rows of errors; empty if the file has none.
+/// Reads the labels of the rows of errors; empty if the file has none. rows: name of the axis of rows.
 RowLabels read_labels(const h5::File& file, const std::string& rows) {
   RowLabels labels;
   if (!file.exists(kLabels)) return labels;
@@ -238,8 +239,8 @@ std::vector<std::string> component_units(const std::string& text, std::size_t co
   return list;
 }
 
-/// Sets the first cells of each line of a table: the label of its row of errors, if rows have labels, and a number.
-/// row(line): the position of the row of errors.
+/// Adds the first columns of a table: the label of the row of errors, if rows have labels, and a number with this
+/// heading. row(line): position of the row of errors. number(line): the number.
 template <class Row, class Number>
 void set_first_cells(CsvTable& table, const RowLabels& labels, const std::string& heading, const Row& row,
                      const Number& number) {
@@ -251,7 +252,8 @@ void set_first_cells(CsvTable& table, const RowLabels& labels, const std::string
   table.columns.push_back({heading, [number](std::size_t line) { return to_number(number(line)); }});
 }
 
-/// Appends columns with the results of solves to the table. solve(line): the pose and the sample of a line.
+/// Appends columns with the outcomes of solves to the table, one solve in each line. solve(line): pose and sample of a
+/// line.
 template <class Solve>
 void append_solve_columns(CsvTable& table, const StoredResult& result, const Solve& solve) {
   const Evaluation& found = evaluation_of(result);
@@ -338,13 +340,13 @@ CsvTable error_table(const StoredResult& result) {
   return table;
 }
 
-/// Gives a table with a line for each row of errors the column "kept", if the study states limits.
+/// Adds the column "kept" to a table with a line for each row of errors, if the study states limits.
 void append_kept(CsvTable& table, const Evaluation& found) {
   if (found.within_limits.empty()) return;
   table.columns.push_back({"kept", [&found](std::size_t row) { return to_number(found.within_limits[row]); }});
 }
 
-/// A table with a line for each row of errors. Precondition: the rows have labels.
+/// The table "parts", with a line for each row of errors. Precondition: the rows have labels.
 CsvTable part_table(const StoredResult& result) {
   const RowLabels& labels = evaluation_of(result).labels;
   CsvTable table{"parts", {labels.column, [&](std::size_t row) { return labels.names[row]; }}, labels.names.size()};
@@ -380,7 +382,7 @@ CsvTable case_sum_table(const StoredResult& result) {
   return table;
 }
 
-/// The result of `poesy evaluate`, and the errors in the columns of its table. Keeps references to both.
+/// The result of `poesy evaluate`, and the errors that have a column in its table. Keeps references to both.
 struct TableOfErrors {
   std::span<const FactorIndex> factors;
   const Evaluation& found;
@@ -414,7 +416,7 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
 }
 
 /// Reads mean, extreme and count of each case. Files of version 0.2 have no extremes (their `max` is the largest value
-/// with its sign), so all three are computed again from the solves that count in the file.
+/// with its sign), so all three are computed from the solves, with the policy that gives the counts of the file.
 void read_case_fields(const h5::File& file, Evaluation& found) {
   read_fields(file, "/evaluate", kCaseFields, found);
   if (!found.extreme.empty()) return;
@@ -443,11 +445,11 @@ void read(const h5::File& file, StoredResult& result) {
   found.errors = decltype(found.errors)({axis_length(file, rows), axis_length(file, "factor")},
                                         read_along<double>(file, "/errors/values", {rows, "factor"}));
   found.labels = read_labels(file, rows);
-  // Files of version 0.2 do not say which errors have no column.
+  // Files of version 0.2 do not list the errors without a column.
   const std::string zero_errors = std::string("/") + kZeroErrors;
   if (!has_cases && file.exists(zero_errors)) found.zero_errors = file.read<std::string>(zero_errors);
   check_names(found.zero_errors, zero_errors);
-  // Files of version 0.2 do not say which rows are within all limits.
+  // Files of version 0.2 do not state which rows are within all limits.
   if (result.verdicts && file.exists(kWithinLimits)) {
     found.within_limits = read_along<std::uint8_t>(file, kWithinLimits, {rows});
     if (std::ranges::any_of(found.within_limits, [](std::uint8_t within) { return within > 1; })) {

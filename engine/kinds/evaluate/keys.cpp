@@ -31,7 +31,7 @@ void set_case_errors(const StudyValue& value, std::string_view key, const ModelD
   }
 }
 
-/// The factor sets that a case names, larger sets first. Throws InputError if two sets overlap and neither contains the
+/// The factor sets that a case names, larger sets first. Throws InputError if two sets overlap but neither contains the
 /// other.
 std::vector<const FactorSet*> sets_in_case(const StudySection& section, const ModelDescription& model) {
   std::vector<const FactorSet*> sets;
@@ -54,8 +54,9 @@ std::vector<const FactorSet*> sets_in_case(const StudySection& section, const Mo
   return sets;
 }
 
-/// The errors of a case. The keys `linear` and `angular` set all errors of that dimension. Factor sets override them,
-/// smaller sets override larger ones, and single factors override all.
+/// The errors of a case. The keys `linear`, `angular` and `relative` set all errors of one dimension. Factor sets
+/// override these keys, smaller sets override larger ones, and single factors override all. errors: values of the
+/// errors that the case does not set.
 std::vector<double> read_case_errors(const StudySection& section, const ModelDescription& model,
                                      std::vector<double> errors) {
   std::vector<std::string_view> known = names(model.factors);
@@ -164,7 +165,7 @@ StudyTables case_tables() {
   return {cases, errors, of_set};
 }
 
-/// Checks that a study has cases. Its list of factors stays empty, because the cases state all errors.
+/// Checks that a study has cases. Its list of varied factors is emptied, because the cases state all errors.
 void complete_cases(Study& study, const Reading& reading) {
   study.analysis.factors.clear();
   if (reading.use == StudyUse::run) check_simulated(study, reading.root.section("analysis"));

@@ -4,7 +4,7 @@
 
 namespace poesy {
 
-/// Runs and reports studies of named cases: the responses to fixed errors.
+/// The kind of study `evaluate`: the responses to named cases of fixed errors.
 extern const Kind kEvaluateKind;
 
 /// How results of evaluations are stored and reported.

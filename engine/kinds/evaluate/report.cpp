@@ -20,8 +20,8 @@
 namespace poesy {
 namespace {
 
-/// The number of significant digits in tables. Estimates are shown with fewer; these numbers are solved for given
-/// errors.
+/// The number of significant digits in tables. It is larger than for estimates, because these numbers have no sampling
+/// uncertainty.
 constexpr int kDigits = 6;
 
 /// The mean and the extremes of a response over the solved samples; NaN if no sample is solved.
@@ -54,8 +54,8 @@ std::string passes(const StoredResult& result, std::size_t r) {
   return verdict == nullptr ? "" : fmt::format("; {} of {} pass", verdict->within, verdict->tried);
 }
 
-/// A note like "part 17 is worst in linear_deformation: 0.123 mm at pose 4; 38 of 40 pass". Empty if rows have no
-/// labels or no row was solved.
+/// A note like "part 17 is worst in linear_deformation: 0.123 mm at pose 4; 38 of 40 pass". Empty if the rows of errors
+/// have no labels, or if none was solved.
 std::string worst_note(const StoredResult& result, std::size_t r) {
   const RowLabels& labels = evaluation_of(result).labels;
   if (labels.names.empty()) return {};
@@ -75,8 +75,8 @@ void add_kept(const Evaluation& found, std::vector<FilledColumn>& columns) {
                      [&found](std::size_t row) { return text_cell(found.within_limits[row] == 1 ? "PASS" : "FAIL"); }});
 }
 
-/// The rows that are not within all limits, "fail: SN001, SN007"; rows without labels are named by their lines in the
-/// table. Empty if there are none.
+/// A note that names the rows of errors beyond some limit, "fail: SN001, SN007". Rows without labels are named by their
+/// lines in the table. Empty if there are no such rows, and for named cases.
 std::string fail_note(const Evaluation& found) {
   constexpr std::size_t kMostNamed = 40;
   if (!found.cases.empty()) return {};
@@ -115,7 +115,7 @@ Table parts_table(const StoredResult& result) {
     const NamedUnit& response = result.responses[result.headline[h]];
     const std::vector<RowOutcome>& of = outcomes[h];
     const std::string_view unit = display(response).name;
-    // A narrow table omits columns with larger numbers first, so the columns of the last response are omitted first.
+    // A narrow table first omits the columns with the largest `dispensable`, which are those of the last response.
     const int dispensable = 3 * static_cast<int>(h);
     columns.push_back({number_column(response.name + "_mean", response.name + " mean", unit, dispensable + 2),
                        [&](std::size_t row) { return value_cell(of[row].mean, response, kDigits); }});
@@ -139,7 +139,8 @@ Table cases_table(const StoredResult& result) {
       {text_column("case", "case"), [&](std::size_t c) { return text_cell(found.cases[c]); }},
       {number_column("poses", "poses"), [&](std::size_t c) { return count_cell(found.count.all()[c]); }}};
   add_kept(found, columns);
-  // A narrow table omits columns with larger numbers first, so those of the last response. 0 is never omitted.
+  // A narrow table first omits the columns with the largest `dispensable`, which are those of the last response.
+  // Columns with 0 are never omitted.
   int dispensable = 0;
   for (const std::size_t r : result.headline) {
     const NamedUnit& response = result.responses[r];
@@ -160,7 +161,7 @@ ShownCells cells(const StoredResult& result) {
   return shown_cells(result, cases == 0 ? kSummaryRows : cases);
 }
 
-/// One response to one row of errors at all poses; NaN if it was not solved.
+/// [poses] One response to one row of errors, SI; NaN at poses where the row was not solved.
 std::vector<double> response_to(const EvaluationResult& found, std::size_t r, std::size_t sample) {
   std::vector<double> values;
   for (std::size_t m = 0; m < found.poses(); ++m) {
@@ -169,7 +170,7 @@ std::vector<double> response_to(const EvaluationResult& found, std::size_t r, st
   return values;
 }
 
-/// Adds to the page a curve over the poses for each case, and the same values as fields over the workspace.
+/// Adds two figures to the page: a curve over the poses for each case, and a map of the same values over the workspace.
 void add_cases(const StoredResult& result, const PoseFigures& figures, Page& page, Section& section) {
   const std::vector<std::string>& cases = evaluation_of(result).cases;
   Lines lines{.x = figures.axis(), .panels = {}};
@@ -191,7 +192,8 @@ void add_cases(const StoredResult& result, const PoseFigures& figures, Page& pag
   figures.add_workspace(section, std::move(fields));
 }
 
-/// Quantiles, at these levels, of the values that were solved; NaN if none was solved.
+/// The quantiles, at these levels, of the solved values in `all`; NaN if none was solved. status: [like all] how each
+/// solve ended.
 std::vector<double> order_statistics(std::span<const double> all, std::span<const SolveStatus> status,
                                      std::span<const double> levels) {
   std::vector<double> values;
@@ -207,7 +209,8 @@ std::vector<double> order_statistics(std::span<const double> all, std::span<cons
   return list;
 }
 
-/// At each pose, the 5 % quantile, the median, the 95 % quantile and the largest value over the rows of errors.
+/// [4][poses] The 5 % quantile, the median, the 95 % quantile and the largest value over the rows of errors at each
+/// pose.
 std::array<std::vector<double>, 4> quantiles_at_poses(const EvaluationResult& found, std::size_t r) {
   constexpr std::array kLevels{0.05, 0.5, 0.95, 1.0};
   std::array<std::vector<double>, 4> quantiles;
@@ -289,7 +292,7 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   }
 }
 
-/// Counts how solves ended, for each case, or for all rows of a table of errors together.
+/// Counts how solves ended: for each case, or for all rows of a table of errors together.
 SolveTally tally(const StoredResult& result) {
   const std::vector<std::string>& cases = evaluation_of(result).cases;
   const EvaluationResult& found = evaluation_of(result).solves;
@@ -313,7 +316,8 @@ StudyWords words(const StoredResult& result) {
   return {.samples = counted(found.cases.size(), "case", "cases")};
 }
 
-/// How sure the outcomes are: as sure as the given errors, if there are no others.
+/// A text on the uncertainty of the outcomes: there is none, except for errors without a column, which real machines
+/// have.
 std::string certainty_text(const Evaluation& found) {
   if (found.zero_errors.empty()) return "These errors were given, not drawn, so nothing here is up to chance.";
   return fmt::format(
@@ -322,7 +326,7 @@ std::string certainty_text(const Evaluation& found) {
       no_column_text(found));
 }
 
-/// The method, for a paper: the errors that the table leaves at zero.
+/// The description of the method, for a paper: how many errors are zero because the table has no column for them.
 MethodWords method(const StoredResult& result) {
   const Evaluation& found = evaluation_of(result);
   if (found.zero_errors.empty()) return {};
@@ -362,8 +366,8 @@ Answer answer(const StoredResult& result) {
   return lines;
 }
 
-/// The number by which it is judged which of two results is better: the largest magnitude of the response. It has no
-/// uncertainty, because errors are given.
+/// The figure of merit by which two results are compared: the largest magnitude of the response. Its interval has no
+/// width, because the errors are not drawn.
 std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
   if (name.empty()) return {};
   const std::size_t r = response_named(result, name);

@@ -16,10 +16,10 @@ namespace {
 /// this share.
 constexpr double kReduced = 0.1;
 
-/// Errors of one frame that are solved together, as positions among the factors.
+/// Errors of one frame that are solved together, as indices among the study's factors.
 using FrameErrors = std::vector<std::size_t>;
 
-/// [poses] The deformation at each pose with one set of errors; NaN if it is not solved.
+/// [poses] The deformation, SI, at each pose with one set of errors; NaN if the pose is not solved.
 using Deformations = std::vector<double>;
 
 class Identification {
@@ -48,8 +48,7 @@ class Identification {
   }
 
  private:
-  /// A set of errors that are solved together. Its members have the sizes of the pair of sizes `group`; all other
-  /// errors are zero.
+  /// A set of errors that are solved together, at the pair of sizes `group`; all other errors are zero.
   struct ErrorSet {
     std::size_t group;
     FrameErrors members;
@@ -87,7 +86,8 @@ class Identification {
 
   std::uint64_t below(const Deformations& deformations) const {
     return static_cast<std::uint64_t>(
-        std::ranges::count_if(deformations, [&](double value) { return value <= found_.rounding; }));  // false for NaN
+        // A comparison with NaN is false, so a pose that is not solved is not counted.
+        std::ranges::count_if(deformations, [&](double value) { return value <= found_.rounding; }));
   }
 
   bool deforms(std::uint64_t below_rounding) const { return below_rounding < found_.required_poses; }
@@ -118,7 +118,7 @@ class Identification {
     return true;
   }
 
-  /// For each frame, the errors none of which alone deforms the mechanism at this pair of sizes. Frames with fewer than
+  /// For each frame, the errors that do not deform the mechanism alone at this pair of sizes. Frames with fewer than
   /// two such errors are left out.
   std::vector<FrameErrors> frames(std::size_t group) const {
     std::map<std::pair<std::size_t, std::size_t>, FrameErrors> by_frame;
@@ -150,8 +150,8 @@ class Identification {
     return true;
   }
 
-  /// For errors that together deform the mechanism, finds which of them take part and which pairs deform it. Returns
-  /// false if the run was stopped.
+  /// For errors that together deform the mechanism, finds which of them take part, and which pairs of them deform it.
+  /// with_all: deformations by all of them together. Returns false if the run was stopped.
   bool split(const ErrorSet& whole, const Deformations& with_all) {
     std::vector<ErrorSet> trials;
     for (const std::size_t p : whole.members) {
@@ -194,7 +194,7 @@ class Identification {
       name_members(whole.group, pair[0], pair[1]);
     }
     if (found_.couplings.size() > known) return true;
-    // If no pair deforms the mechanism, more than two errors are needed for that.
+    // No pair deforms the mechanism, so more than two errors are needed to deform it.
     for (const std::size_t p : taking_part) found_.coupled_by_group(whole.group, p) = 1;
     return true;
   }

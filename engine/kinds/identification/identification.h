@@ -12,7 +12,7 @@
 
 namespace poesy {
 
-/// A pair of sizes, of lengths and of angles, that errors have when they are tried.
+/// A pair of sizes at which errors are tried: one for lengths, one for angles.
 struct ErrorSize {
   std::string name;  ///< name in tables
   double linear;     ///< size of errors that are lengths, m
@@ -21,7 +21,7 @@ struct ErrorSize {
 
 /// The options of an identification study.
 struct IdentificationOptions {
-  std::vector<ErrorSize> groups;  ///< pairs of sizes; each has its own verdicts
+  std::vector<ErrorSize> groups;  ///< pairs of sizes; each pair gives its own verdicts
   double pose_share = 0.95;       ///< share of the poses at which a verdict must hold
 };
 
@@ -30,14 +30,14 @@ extern const StudyKind kIdentificationStudy;
 
 /// Two errors of one frame that deform the mechanism only together.
 struct Coupling {
-  std::size_t group;              ///< position of the pair of sizes
-  std::size_t first;              ///< position of the first error among the factors
-  std::size_t second;             ///< position of the second error among the factors
+  std::size_t group;              ///< index of the pair of sizes
+  std::size_t first;              ///< index of the first error among the study's factors
+  std::size_t second;             ///< index of the second error among the study's factors
   std::uint64_t deforming_poses;  ///< number of poses at which both together deform the mechanism
 };
 
 namespace axis {
-using SizeGroup = Axis<"group">;  ///< Pairs of sizes, of lengths and of angles, at which errors are tried.
+using SizeGroup = Axis<"group">;  ///< Pairs of sizes (ErrorSize) at which errors are tried.
 }  // namespace axis
 
 /// Which errors deform the mechanism, for each group (a pair of sizes) and over the poses.
@@ -48,18 +48,19 @@ struct IdentificationResult {
 
   std::vector<ErrorSize> sizes;      ///< [groups] sizes of the errors
   std::size_t poses = 0;             ///< number of poses that were tried
-  double rounding = 0.0;             ///< deformations up to this magnitude are rounding
+  double rounding = 0.0;             ///< deformations up to this magnitude are rounding, SI
   std::uint64_t required_poses = 0;  ///< number of poses at which a verdict must hold
 
   /// Number of poses at which the deformation by the error alone is at most rounding.
   ByGroup<std::uint64_t> single_below;
-  ByGroup<double> single_max;         ///< largest deformation by the error alone over the solved poses; NaN if none
-                                      ///< is solved
+  /// Largest deformation, SI, by the error alone over the solved poses; NaN if none is solved.
+  ByGroup<double> single_max;
   ByGroup<std::uint64_t> not_solved;  ///< number of poses without a solution for the error alone
-  /// Number of poses at which the errors of its frame, all except those that deform the mechanism alone, cause together
-  /// no deformation beyond rounding.
+  /// The coupled stage tries the errors of a frame together, without those that deform the mechanism alone: number of
+  /// poses at which they cause no deformation beyond rounding; 0 if they were not tried.
   ByGroup<std::uint64_t> coupled_below;
-  /// Number of poses at which the deformation by these errors falls to a tenth or less if this error is set to zero.
+  /// Number of poses at which the deformation by these errors together falls to a tenth or less if this error is set to
+  /// zero.
   ByGroup<std::uint64_t> coupled_reduced;
   /// 1 if the error alone deforms the mechanism, otherwise 0.
   ByGroup<std::uint8_t> single_by_group;
@@ -86,12 +87,13 @@ using SolveTable = std::function<std::optional<EvaluationResult>(const ErrorTabl
 /// Single stage: each error is tried while all others are zero. The error does not deform the mechanism if the model's
 /// measure of deformation is at most rounding at enough poses: `pose_share` of them, rounded to whole poses, at least
 /// one (657 of 692 at 0.95, as in the paper). A pose that was not solved counts as deformed, because it does not show
-/// that deformation is absent.
+/// that there is no deformation.
 ///
 /// Coupled stage: for each frame of a limb, all errors that do not deform the mechanism alone are tried together. If
-/// they deform it, all pairs of them are tried. A pair that deforms it is a coupling, and the verdict names its angular
-/// error, or both errors if they have the same dimension. If no pair does, the verdict names all errors that take part.
-/// An error takes part if setting it to zero removes nine tenths of the deformation at `pose_share` of the poses.
+/// they deform it, all pairs of them are tried. A pair that deforms it is a coupling. Of a coupling, the angular error
+/// gets the verdict, or both errors if they have the same dimension. If no pair deforms the mechanism, all errors that
+/// take part get the verdict. An error takes part if setting it to zero removes nine tenths of the deformation at
+/// `pose_share` of the poses.
 ///
 /// Precondition: the model has a measure of deformation.
 std::optional<IdentificationResult> identify(const Analysis& analysis, const ModelDescription& model,

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kIdentificationKeys{"factors", "pose_share", "groups"};
 
-/// The pair of sizes in a study that states none: one display unit of length and one of angle.
+/// The pair of sizes for a study that states none: one display unit of length (1 mm) and one of angle (1 deg).
 ErrorSize usual_group() { return {"group 1", display_unit(Dimension::length).si, display_unit(Dimension::angle).si}; }
 
 const InnerRows<ErrorSize>& group_keys() {

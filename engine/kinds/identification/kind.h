@@ -4,7 +4,7 @@
 
 namespace poesy {
 
-/// Runs and reports identification studies: which errors deform the mechanism at all.
+/// The kind of study `identification`: which errors deform the mechanism at all.
 extern const Kind kIdentificationKind;
 
 /// How results of identification studies are stored and reported.

@@ -80,7 +80,7 @@ std::vector<std::string> group_names(const StoredResult& result) {
   return names;
 }
 
-/// Converts numbers of poses to shares of all poses. but_these: if true, to the shares of all other poses instead.
+/// Converts numbers of poses to shares of all poses, or to the shares of the remaining poses if `but_these` is true.
 std::vector<double> share_of_poses(const IdentificationResult& found,
                                    const IdentificationResult::ByGroup<std::uint64_t>& counts, bool but_these) {
   std::vector<double> list;
@@ -91,8 +91,8 @@ std::vector<double> share_of_poses(const IdentificationResult& found,
   return list;
 }
 
-/// [groups x errors] The largest deformation by each error alone, as a share of the largest by any error of its group.
-/// 0 if the deformation is only rounding, NaN if it is unknown.
+/// [groups x errors] The largest deformation by each error alone, divided by the largest deformation by any error at
+/// the same pair of sizes. 0 if the deformation is only rounding, NaN if it is unknown.
 std::vector<double> relative_deformations(const IdentificationResult& found) {
   std::vector<double> list;
   for (std::size_t g = 0; g < found.groups(); ++g) {
@@ -104,7 +104,7 @@ std::vector<double> relative_deformations(const IdentificationResult& found) {
   return list;
 }
 
-/// Returns true if some share is neither of no pose nor of all. Otherwise the shares say no more than the verdicts.
+/// Returns true if some share is neither 0 nor 1. If all are 0 or 1, they say no more than the verdicts.
 bool differ_by_pose(std::span<const double> shares) {
   return std::ranges::any_of(shares, [](double share) { return share > 0.0 && share < 1.0; });
 }

@@ -10,7 +10,8 @@
 namespace poesy {
 namespace {
 
-/// Reads or writes the numbers of a result that were computed from the sketch of a response at a finished pose.
+/// Reads or writes the statistics of one response at a finished pose that come from its quantile sketch: the extremes,
+/// the quantiles, and share_magnitude if it is computed.
 void sketched_state(Archive& archive, MonteCarloResult& result, std::size_t response, std::size_t pose) {
   archive.real(result.min(response, pose), result.max(response, pose));
   archive.reals(result.quantiles.row(response, pose));
@@ -20,7 +21,8 @@ void sketched_state(Archive& archive, MonteCarloResult& result, std::size_t resp
   if (!result.share_magnitude.empty()) archive.real(result.share_magnitude(response, pose));
 }
 
-/// Refuses the state of a pose if its samples are not whole units, or are more than most_samples.
+/// Refuses to read the state of a pose unless its number of samples is a positive multiple of Plan::kUnitSamples and at
+/// most most_samples.
 void expect_whole(const Archive& archive, const SolveCounts& solves, std::size_t most_samples) {
   const std::uint64_t total = solves.total();
   archive.expect(total > 0 && total % Plan::kUnitSamples == 0 && total <= most_samples,

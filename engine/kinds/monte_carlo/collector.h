@@ -19,7 +19,7 @@ namespace poesy {
 
 /// The statistics of one response over some samples.
 struct ResponseSamples {
-  Moments moments;        ///< mean and spread, which the sketch would only approximate
+  Moments moments;        ///< mean and standard deviation, more exact than those of the sketch
   QuantileSketch sketch;  ///< approximate distribution of the samples, for quantiles
 
   void state(Archive& archive) { archive.objects(moments, sketch); }  ///< Reads or writes the statistics.
@@ -32,9 +32,9 @@ struct PoseSamples {
   FailedSamples failed;                    ///< the first samples that failed
   std::optional<MainEffectSums> effects;   ///< sums for main effects; only at the poses where main effects are computed
 
-  /// Empty statistics. errors: the number of errors that vary.
+  /// Statistics without samples, for this many responses and varying errors.
   PoseSamples(std::size_t response_count, std::size_t error_count) : responses(response_count), errors_(error_count) {}
-  /// Adds a unit. Precondition: its samples come after those already added.
+  /// Adds the statistics of a unit (a block of samples). Precondition: its samples come after those already added.
   void add(const PoseUnit& unit);
   void state(Archive& archive);  ///< Reads or writes the statistics, bit for bit.
 
@@ -42,24 +42,25 @@ struct PoseSamples {
   std::size_t errors_;
 };
 
-/// Merges units of samples, pose by pose. Objects of this class are the sums of a PoseFold (run/pose_fold.h). The
-/// sketches of the pose that is being merged are in memory, and one sketch for each response over all finished poses.
-/// So memory does not depend on the number of samples; only the result grows with the number of poses. For a later
-/// study with more samples, packed sketches of finished poses are kept as well, up to kMostKeptBytes. The result does
-/// not depend on the order in which poses are finished.
+/// Merges the units (blocks of samples) of a Monte Carlo study with draws per pose, pose by pose; a pose is finished
+/// when all its samples are merged. PoseFold (run/pose_fold.h) adds the units to an object of this class. Quantile
+/// sketches are in memory only for the pose that is being merged, and for each response over all finished poses. So
+/// memory does not depend on the number of samples, and each finished pose takes only a few numbers. For a later study
+/// with more samples, packed sketches of finished poses are kept as well, up to kMostKeptBytes. The result does not
+/// depend on the order in which poses are finished.
 class MonteCarloCollector {
  public:
-  /// The largest number of bytes of packed sketches. A pose whose sketches would exceed it is solved again if more
-  /// samples are wanted.
+  /// The largest number of bytes of packed sketches that are kept for a later study with more samples. If the sketches
+  /// of a pose no longer fit, that study solves the pose again from its first sample.
   static constexpr std::size_t kMostKeptBytes = std::size_t{64} << 20U;
   /// True: PoseFold makes the sums anew for each round of adaptive sampling, because a finished pose takes no more
   /// samples.
   static constexpr bool kOfRound = true;
 
-  /// keep_checkpoint: whether to keep packed sketches of finished poses.
+  /// Keeps a reference to the plan. keep_checkpoint: whether to keep packed sketches of finished poses.
   MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis, bool keep_checkpoint = true);
 
-  /// Adds a unit. All units of a pose must be added before those of another pose.
+  /// Adds a unit. Precondition: no pose is begun before all units of the previous pose are added.
   void add(const WorkUnit& unit, const PoseUnit& found);
   /// The number of units at this pose that were added.
   std::size_t units_done(std::size_t pose) const;
@@ -70,15 +71,16 @@ class MonteCarloCollector {
   /// The result. Precondition: every unit was added.
   MonteCarloResult result() &&;
 
-  /// Writes the statistics of all poses, or reads those of a plan with this many samples and adds them. If this plan
-  /// has more samples, all read poses are unfinished and continue from their packed sketches.
+  /// Writes the statistics of all poses; or reads those that a study with `samples` samples at each pose wrote, and
+  /// adds them. If this study has more samples, the poses that are read are unfinished, and continue from their packed
+  /// sketches.
   void state(Archive& archive, std::size_t samples);
 
  private:
-  /// The statistics of whole units at a pose, packed as bytes.
+  /// The statistics of full units (of Plan::kUnitSamples samples) at one pose, packed as bytes.
   struct Kept {
     SolveCounts solves;
-    Bytes bytes;  ///< state of a PoseSamples
+    Bytes bytes;  ///< what PoseSamples::state() writes; empty if nothing is kept
   };
 
   bool is_finished(std::size_t pose) const { return columns_.result().solves[pose].total() > 0; }
@@ -86,12 +88,12 @@ class MonteCarloCollector {
   void finish_pose();
   /// Sets the numbers that depend on the moments of a response at a pose.
   void set_moments(std::size_t response, std::size_t pose, const Moments& moments);
-  /// Packs the statistics of the open pose, which are those of whole units. Keeps them only if kMostKeptBytes allows
-  /// it.
+  /// Packs the statistics of the pose whose units are being added, and keeps them if kMostKeptBytes allows it.
+  /// Precondition: all its units so far are full units.
   void keep();
   void set_kept(std::size_t pose, Kept kept);
   void finished_state(Archive& archive, std::size_t pose, std::size_t samples);
-  /// Computes first-order indices and main effects. Draws at different poses are independent.
+  /// Computes first-order indices and main effects, for draws that are independent between poses.
   EffectResult effects() const;
   PoseSamples no_samples() const { return {responses_, plan_->factors().size()}; }
   void open_state(Archive& archive, std::size_t samples);
@@ -102,16 +104,16 @@ class MonteCarloCollector {
   std::vector<ResponseLimit> limits_;
   MonteCarloOptions asked_;
   bool keep_checkpoint_;
-  PoseIndex open_;                                      ///< pose whose units are being added
-  PoseSamples at_pose_;                                 ///< statistics of this pose
+  PoseIndex open_;                                      ///< the open pose: the one whose units are being added
+  PoseSamples at_pose_;                                 ///< statistics of the open pose; no samples if no pose is open
   std::vector<QuantileSketch> sketches_;                ///< [responses] sketch over all finished poses
   Array<Moments, axis::Pose, axis::Response> moments_;  ///< moments at the finished poses
   MonteCarloColumns columns_;                           ///< result at the finished poses
-  std::vector<std::optional<MainEffectSums>> effects_;  ///< sums for main effects of each finished pose at which they
-                                                        ///< are computed
-  std::vector<FailedSamples> failed_;                   ///< failed samples of each finished pose
-  /// [poses] Packed statistics. Those of a finished pose are kept for a longer study; an unfinished pose has those that
-  /// were read from a shorter study.
+  /// [poses] Sums for main effects; set for a finished pose at which they are computed.
+  std::vector<std::optional<MainEffectSums>> effects_;
+  std::vector<FailedSamples> failed_;  ///< [poses] the first failed samples of each finished pose
+  /// [poses] Packed statistics: of a finished pose for a later study with more samples, of an unfinished pose those
+  /// that were read from a study with fewer samples.
   std::vector<Kept> kept_;
   std::size_t kept_bytes_ = 0;
 };

@@ -14,8 +14,8 @@ namespace {
 /// The mean, or NaN without samples.
 double mean_of(const Moments& moments) { return moments.count() == 0 ? kNaN : moments.mean(); }
 
-/// Converts the ranks of an interval's ends among `trials` values to ranks among `count` values, in proportion, rounded
-/// outwards.
+/// Scales the ranks of both ends of an interval from a list of `trials` values to a list of `count` values, in
+/// proportion and rounded outwards.
 RankInterval among(const RankInterval& ranks, std::uint64_t trials, std::uint64_t count) {
   if (trials == count || trials == 0) return ranks;
   const double each = static_cast<double>(count) / static_cast<double>(trials);
@@ -34,7 +34,8 @@ std::uint64_t count_within(const QuantileSketch& samples, const ValueLimit& limi
   return within;
 }
 
-/// Sets `value` and `pose` of the verdict to the worst share_magnitude over the poses, and its pose.
+/// Sets `value` of the verdict to the worst share_magnitude of its response over the poses, and `pose` to the pose with
+/// this value.
 void take_worst_pose(const MonteCarloResult& found, LimitVerdict& verdict) {
   const std::span at_poses = found.share_magnitude.row(verdict.response);
   const auto worst = std::ranges::max_element(at_poses, {}, [&](double value) { return verdict.limit.badness(value); });

@@ -17,7 +17,7 @@ namespace poesy {
 /// Computes the numbers of a Monte Carlo result at each pose and over all poses.
 class MonteCarloColumns {
  public:
-  /// A result for a study with this analysis, in which all numbers are unset.
+  /// A result with room for the numbers of a study with this analysis; all numbers are 0 until they are set.
   MonteCarloColumns(std::size_t poses, std::size_t responses, const Analysis& analysis);
 
   MonteCarloResult& result() { return result_; }              ///< The numbers set so far.
@@ -25,17 +25,17 @@ class MonteCarloColumns {
 
   /// Sets the numbers that depend on the moments of a response at a pose.
   void set_moments(std::size_t response, std::size_t pose, const Moments& moments);
-  /// Sets the quantiles of a response at a pose. tried: the number of all samples at the pose, including samples that
-  /// do not count (counts()).
+  /// Sets the extremes and quantiles of a response at a pose, and share_magnitude for Judge::share. tried: the number
+  /// of all samples at the pose, including samples that do not count in statistics (counts() in run/result.h).
   void set_quantiles(std::size_t response, std::size_t pose, const QuantileSketch& sketch, std::uint64_t tried);
-  /// Sets the numbers of a response over all poses. independent: the number of independent samples, which is that of
-  /// all samples, or with draws per machine the number of machines. With draws per machine, the intervals of quantiles
-  /// assume that a machine's samples are equal at all poses, so they are never too narrow.
+  /// Sets the numbers of a response over all poses. independent: the number of independent samples: of all samples that
+  /// count if errors are drawn per pose, of machines if they are drawn per machine. In the second case, the intervals
+  /// of quantiles assume that the samples of a machine are equal at all poses, so they are never too narrow.
   void set_overall(std::size_t response, const Moments& moments, const QuantileSketch& sketch,
                    std::uint64_t independent);
 
  private:
-  /// For each quantile, the ranks of both ends of its interval among this many samples.
+  /// [quantiles] The ranks of both ends of the interval of each quantile, among this many samples.
   const std::vector<RankInterval>& ranks_of(std::uint64_t samples);
 
   MonteCarloOptions asked_;
@@ -49,20 +49,21 @@ class MonteCarloColumns {
 /// The quantiles of some samples, with their intervals.
 struct QuantilesOf {
   std::vector<double> value;       ///< [quantiles] order statistics; NaN without samples
-  std::vector<Interval> interval;  ///< [quantiles] confidence interval of each
-  double error = kNaN;  ///< bound on the difference between a value and the order statistic of the samples that it
-                        ///< stands for; NaN without samples
+  std::vector<Interval> interval;  ///< [quantiles] confidence interval of each quantile
+  double error = kNaN;  ///< largest possible difference between a number in `value` and the exact order statistic of
+                        ///< the samples; NaN without samples
 
-  /// Copies values and intervals into the rows of a result.
+  /// Copies the values and the ends of the intervals into these rows of a result.
   void copy(std::span<double> values, std::span<double> low, std::span<double> high) const;
 };
 
-/// The value with this rank, counted from 1, if values are sorted by ValueLimit::badness. For a limit on magnitudes,
-/// the value is a magnitude. If there are fewer values than the rank, the result is beyond every limit: infinite for a
-/// limit on magnitudes, otherwise NaN.
+/// The value with this rank, counted from 1, if values are sorted by ValueLimit::badness, which is larger for a worse
+/// value. For a limit on magnitudes, the result is a magnitude. If there are fewer values than the rank, the result is
+/// beyond every limit: infinite for a limit on magnitudes, otherwise NaN.
 double value_at_rank(const QuantileSketch& values, const ValueLimit& limit, std::uint64_t rank);
 
-/// Computes quantiles from a sketch. buckets: the samples; levels: the quantiles; ranks: the ends of each interval.
+/// Computes quantiles from a sketch. buckets: the filled buckets of the sketch. levels: [quantiles] the share of the
+/// samples below each quantile. ranks: [quantiles] the ranks of both ends of its interval.
 QuantilesOf quantiles_of(std::span<const Bucket> buckets, std::span<const double> levels,
                          std::span<const RankInterval> ranks);
 
@@ -74,12 +75,12 @@ inline constexpr std::size_t kHistogramBins = 128;
 void fill_histogram(std::span<const Bucket> buckets, std::span<double> edges, std::span<std::uint64_t> counts);
 
 /// Judges the limits of a Monte Carlo study by its result. A limit is kept
-/// - by Judge::rms, if the root mean square of the response over the counted samples of all poses is within it;
-/// - by Judge::share, if at every pose at least the share `share` of all draws is within it, which follows from the
+/// - for Judge::rms, if the root mean square of the response over the counted samples of all poses is within it;
+/// - for Judge::share, if at each pose at least the share `share` of all draws is within it, which follows from the
 /// worst share_magnitude over the poses. A draw that does not count is not within the limit.
 /// overall: [responses] sketch of the counted samples of all poses. Preconditions: judge is rms or share;
-/// found.overall_rms is set, and for Judge::share also found.share_magnitude; for Judge::rms, all limits are on
-/// magnitudes and none is over poses.
+/// found.overall_rms is set, and for Judge::share also found.share_magnitude; no limit is over several poses
+/// (ValueLimit::is_over_poses); for Judge::rms, all limits are on magnitudes.
 LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, double share,
                           const MonteCarloResult& found, std::span<const QuantileSketch> overall);
 

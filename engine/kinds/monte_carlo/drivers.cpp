@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kStep = kErrorGrowth - 1.0;
 
-/// Below this share of the scatter that is linear in the errors, the shares of errors say little.
+/// If less than this share of the scatter is linear in the errors, the shares of single errors say little.
 constexpr double kMostlyLinear = 0.9;
 
 const YieldResult* yield_in(const StoredResult& result) {
@@ -26,7 +26,8 @@ const YieldResult* yield_in(const StoredResult& result) {
   return machines && machines->yield ? &*machines->yield : nullptr;
 }
 
-/// The limited responses in whose scatter the shares of errors are known, the one that rejects most machines first.
+/// Positions of the limited responses for which the shares of the errors in the scatter are known. The response whose
+/// limit rejects most machines comes first.
 std::vector<std::size_t> shared_responses(const StoredResult& result, const YieldResult& yield) {
   std::vector<std::size_t> list;
   if (!yield.has_shares()) return list;
@@ -37,8 +38,8 @@ std::vector<std::size_t> shared_responses(const StoredResult& result, const Yiel
   return list;
 }
 
-/// The change of the yield if the sigma of an error grows by a tenth, for each error, and its interval. If a file has
-/// only the gradient, the change is computed from it.
+/// [errors] The change of the yield if the sigma of one error grows by a tenth, and both ends of its interval. If a
+/// file has only the gradient of the yield, the change is computed from the gradient.
 struct Changes {
   using Values = Array<double, axis::Factor>;
   Values value;
@@ -62,24 +63,25 @@ Changes changes_of(const StoredResult& result, const YieldResult& yield) {
 }
 
 /// Whether the share of error p in the scatter of any limited response is above zero or unknown. Also true if no
-/// response has known shares.
+/// response has known shares. shares: the shares, or the lower ends of their intervals.
 bool has_any_share(const StoredResult& result, const YieldResult& yield, const MainEffects::Indices& shares,
                    std::size_t p) {
   const std::vector<std::size_t> responses = shared_responses(result, yield);
   return responses.empty() || std::ranges::any_of(responses, [&](std::size_t r) { return !(shares(r, p) <= 0.0); });
 }
 
-/// The errors on which the yield certainly depends: their effect on it is distinguished from zero (told).
+/// The errors whose effect on the yield was tested, and those whose effect is distinguished from zero ("told").
 struct ToldErrors {
-  std::vector<std::size_t> told;  ///< these errors: first those that certainly have a share in the scatter of a
-                                  ///< response, then the others; in both groups the largest loss of yield first
-  std::size_t tested = 0;  ///< number of errors whose effect was tested: their change of the yield is known, and their
-                           ///< share in some scatter is not known to be zero
+  std::vector<std::size_t> told;  ///< positions of the errors whose effect is distinguished from zero: first those
+                                  ///< whose share in the scatter of a response is certainly above zero, then the
+                                  ///< others; in each group the largest loss of yield first
+  std::size_t tested = 0;  ///< number of errors whose effect was tested: their change of the yield is known, and not
+                           ///< all their shares in scatter are known to be zero
   std::size_t known = 0;   ///< number of errors whose change of the yield is known
 };
 
-/// Finds the errors of ToldErrors. Tests all errors together, because of many separate tests some would show an effect
-/// by chance.
+/// Tests the effects of errors on the yield. All errors are tested together, because some of many separate tests would
+/// show an effect by chance.
 ToldErrors told_errors(const StoredResult& result, const YieldResult& yield, const Changes& changes) {
   ToldErrors found;
   std::vector<Estimate> estimates;
@@ -111,10 +113,10 @@ std::string linear_note(const StoredResult& result, const YieldResult& yield, st
       yield.linear_share(r) < kMostlyLinear ? "; the rest belongs to no error alone, so these shares say little" : "");
 }
 
-/// A note on the mean of a response over the machines, which smaller errors do not change. Empty if the mean is hardly
-/// a part of the mean square, or if the file does not contain it.
+/// A note on the mean of a response over the machines, which tighter tolerances do not change. Empty if the mean is a
+/// smaller share of the mean square than kNoticeable, or if the file does not contain it.
 std::string offset_note(const StoredResult& result, const YieldResult& yield, std::size_t r) {
-  constexpr double kNoticeable = 0.001;  // the note is given from this share of the mean square on
+  constexpr double kNoticeable = 0.001;  // smallest share of the mean square for which there is a note
   if (!yield.has_offset() || !(yield.offset_share(r) >= kNoticeable)) return {};
   return fmt::format(
       "{}: not in these shares is its mean over the machines, {} as a root mean square over the poses: {} of the whole "
@@ -186,8 +188,9 @@ std::string needed_machines_note(const Changes& changes, const ToldErrors& found
       counted(kFiner * kFiner * yield.machines, "machine", "machines"));
 }
 
-/// A note on the order of the listed changes, and on their sizes: of many estimates those that exclude zero are larger
-/// than the truth as a rule (Ioannidis 2008, Epidemiology 19, 640-648). with_shares: whether shares are beside them.
+/// A note on the order of the listed changes, and on their bias: among many estimates, those whose interval excludes
+/// zero are usually larger than the truth (Ioannidis 2008, Epidemiology 19, 640-648). with_shares: whether the table
+/// has a column with shares of the scatter.
 std::string selection_note(bool with_shares) {
   return fmt::format(
       "rows are listed because their interval excludes zero, the largest loss first{}; of many uncertain effects those "

@@ -14,7 +14,7 @@
 /// Tables and report section of the errors on which a yield depends.
 namespace poesy {
 
-/// Sorts positions by decreasing value, NaN last.
+/// Sorts the positions in `order` by decreasing value(position); positions with NaN come last.
 std::vector<std::size_t> largest_first(std::vector<std::size_t> order, const std::function<double(std::size_t)>& value);
 
 /// The values of all errors, one response after the other in the order of `responses`.
@@ -22,7 +22,7 @@ std::vector<double> in_order(const MainEffects::Indices& values, std::span<const
 
 /// The shares of errors in the scatter of a limited response.
 struct ResponseShares {
-  std::size_t response;          ///< of the limited responses with known shares, the one that rejects most machines
+  std::size_t response;  ///< position of the limited response that rejects most machines, among those with known shares
   std::span<const double> each;  ///< [errors] share of each error; NaN for correlated errors; refers to the result
 };
 

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kFar = 30.0;
 
-/// The end of a limit that is farther from zero; the other end if that one is infinite.
+/// The distance from zero of that end of a limit which is farther from zero; of the other end if that distance is
+/// infinite.
 double size_of(const ValueLimit& limit) {
   const double from = std::abs(limit.from());
   const double to = std::abs(limit.to());

@@ -7,9 +7,9 @@
 
 namespace poesy {
 
-/// Notes on limits that are far from the root mean square of their response, if all machines or no machine is good. A
-/// limit or a sigma in another unit gives such a yield. A limit is far if it is more than 30 times larger or smaller.
-/// Limits on a spread are left out. Precondition: the result is that of a Monte Carlo study.
+/// Notes on limits that are more than 30 times larger or smaller than the root mean square of their response, if all
+/// machines or no machine is good. The likely cause is a limit or a sigma in a wrong unit. Limits on a spread are left
+/// out. Precondition: the result is that of a Monte Carlo study.
 std::vector<std::string> far_limit_notes(const StoredResult& result);
 
 }  // namespace poesy

@@ -20,7 +20,7 @@ const std::string kEndOfInterval =
 const std::string kLowerEnd = "Lower" + kEndOfInterval;
 const std::string kUpperEnd = "Upper" + kEndOfInterval;
 
-/// Numbers at each pose and over all poses, in the order of the CSV columns.
+/// The fields of the group /monte_carlo: numbers at each pose and over all poses.
 const Group<MonteCarlo> kMonteCarlo{
     "/monte_carlo",
     "Each response with all errors varying together, at each pose and over all poses",
@@ -75,11 +75,11 @@ const Group<MonteCarlo> kMonteCarlo{
       "and no main effects; left out where all vary",
       Presence::where_computed}}};
 
-/// The numbers of a CSV table. They are arrays whose last axis is that of the table's lines; arrays of quantiles have a
-/// further axis for the quantiles after it.
+/// The arrays of numbers that a CSV table shows. The last axis of each array has the lines of the table; arrays of
+/// quantiles have one more axis after it, for the quantiles.
 template <class Numbers, class Quantiles, class Counts>
 struct ShownNumbers {
-  /// Numbers in the columns before the number of samples, each with the heading of its column.
+  /// The arrays of the columns before the column `count`, each with its heading.
   std::vector<std::pair<std::string, const Numbers*>> first;
   const Counts& count;
   const Numbers& rms;
@@ -89,8 +89,8 @@ struct ShownNumbers {
   const Numbers& quantile_error;
 };
 
-/// Appends columns with these numbers and quantiles. at: positions on the axes that come before the axis of the table's
-/// lines.
+/// Appends columns with these numbers and quantiles. at: positions on the axes before the axis of the lines: the
+/// response, or nothing if the lines are responses.
 template <class Numbers, class Quantiles, class Counts, class... Positions>
 void append_number_columns(CsvTable& table, const std::string& unit, const std::vector<double>& levels,
                            const ShownNumbers<Numbers, Quantiles, Counts>& shown, Positions... at) {
@@ -157,8 +157,8 @@ CsvTable overall_table(const StoredResult& result) {
   return table;
 }
 
-/// A table of the histogram of response r. Bins of zero width are left out, because they only fill unused elements of
-/// the result.
+/// A table of the histogram of response r. Empty bins of zero width are left out, because they only fill unused
+/// elements of the result.
 CsvTable histogram_table(const StoredResult& result, std::size_t r) {
   const MonteCarlo& found = monte_carlo_of(result);
   const NamedUnit& response = result.responses[r];

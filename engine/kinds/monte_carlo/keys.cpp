@@ -58,8 +58,8 @@ std::string judge_line(const Study& study) {
   return idle ? "" : "judge = " + in_quotes(name(asked.judge)) + "\n";
 }
 
-/// The line of a study file with the key `share`. It is written even if limits are left out (CheckpointIdentity),
-/// because share_magnitude is part of a run's state.
+/// The line of the key `share` in a study file. The text that identifies a checkpoint (identity_of()) has this line
+/// even if limits are left out of it, because the saved state contains share_magnitude.
 std::string share_line(const Study& study) {
   const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
   return asked.judge == Judge::share ? "share = " + shortest(asked.share) + "\n" : "";
@@ -113,8 +113,8 @@ void check_share(const Study& study, const StudySection& section) {
   }
 }
 
-/// Refuses a wanted yield if limits are not judged by it, or if this number of machines cannot show it even if all of
-/// them are good.
+/// Refuses the key `yield` if limits are not judged by the yield, if there are no limits, or if the number of machines
+/// is too small to show this yield even if all machines are good.
 void check_yield(const Study& study, const StudySection& section) {
   const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
   const auto yield = section.find("yield");
@@ -136,7 +136,7 @@ void check_yield(const Study& study, const StudySection& section) {
               "take " + std::to_string(needed) + " samples or more, or ask for a smaller yield");
 }
 
-/// Refuses limits that cannot be judged by the stated rule (Judge).
+/// Refuses limits that cannot be judged in the way that the key `judge` states.
 void check_limits(const Study& study, const StudySection& section) {
   const Judge by = asked_of<MonteCarloOptions>(study.analysis).judge;
   for (const ResponseLimit& limit : study.analysis.limits) {

@@ -15,26 +15,27 @@
 
 namespace poesy {
 
-/// Merges units of machines in their order. Objects of this class are the sums of a UnitFold (run/unit_fold.h). A
-/// sketch of each response at each pose is in memory. Memory hardly grows with the number of machines: by one set of
-/// sums for each octal digit of this number (MergeTree).
+/// Merges units (blocks of machines) in their order. UnitFold (run/unit_fold.h) adds the units to an object of this
+/// class. The object keeps a quantile sketch for each response at each pose. Memory hardly grows with the number of
+/// machines: by one MachineSums for each octal digit of the number of units (MergeTree), and by one byte for each
+/// machine below MachineTable::kept().
 class MachineCollector {
  public:
   /// Keeps references to both arguments.
   MachineCollector(const MachineTable& table, const Analysis& analysis);
 
-  void add(std::size_t n, MachineUnit&& unit);  ///< Adds the next unit.
+  void add(std::size_t n, MachineUnit&& unit);  ///< Adds unit n. Precondition: it is the next one.
   /// [responses] The mean of each response over the samples of all poses, with its interval. Only machines that are
   /// solved at every pose count. The interval assumes that machines are independent.
   std::vector<Estimate> overall_means() const;
   /// The result of all machines that were added. Precondition: no units are added afterwards.
   MonteCarloResult result() &&;
 
-  /// Reads or writes the sums of these units. Sums that are read are added to those of this object.
+  /// Reads or writes the sums of the units in this range. Sums that are read are added to those of this object.
   void state(Archive& archive, const NumberRange& units);
 
  private:
-  /// Counts and sketches, which do not depend on the order in which machines are added.
+  /// Counts, sketches and lists over machines. Unlike MachineSums they have no rounding, so they need no MergeTree.
   struct Counts {
     Array<QuantileSketch, axis::Pose, axis::Response> at_pose;
     std::vector<QuantileSketch> largest;  ///< [responses] largest magnitude of each machine

@@ -13,11 +13,11 @@ namespace {
 
 const Axes kByEffectPose{"effect_pose"};
 
-/// The end of the description of each number over machines: a machine that is not solved at every pose is not counted.
+/// The end of descriptions of numbers over machines. Machines that are not solved at every pose are left out of them.
 const std::string kOfSolved = " over the machines that are solved at every pose";
 
-/// The fields with statistics of one number of each machine. what: this number, such as "largest magnitude over the
-/// poses".
+/// The fields with the distribution over the machines of a number that each machine has. what: this number, such as
+/// "largest magnitude over the poses".
 Group<MachineValues> values_group(const std::string& path, const std::string& what) {
   using Values = MachineValues;
   const std::string of = "of the machines' " + what + ",";
@@ -184,7 +184,7 @@ void write_indices(ResultBuilder& result, const std::string& group, const Fields
   result.file().set_attribute(group + "/S1", "conf_level", conf_level);
 }
 
-/// A table with statistics of one number of each machine, with a line for each response.
+/// A table with the distribution over the machines of a number that each machine has, with a line for each response.
 CsvTable by_response(const StoredResult& result, const std::string& name, const MachineValues& values) {
   const std::vector<double>& levels = monte_carlo_of(result).levels;
   CsvTable table{name,
@@ -215,8 +215,8 @@ CsvTable by_response(const StoredResult& result, const std::string& name, const 
   return table;
 }
 
-/// Appends to the table columns with a number of each error for a response, and with its interval: "share_RESPONSE",
-/// "share_ci_low_RESPONSE" and "share_ci_high_RESPONSE".
+/// Appends three columns to the table: a number of each error for one response, and both ends of its interval. With the
+/// name "share": "share_RESPONSE", "share_ci_low_RESPONSE" and "share_ci_high_RESPONSE".
 void append_error_columns(CsvTable& table, const std::string& name, const std::string& response,
                           std::span<const double> value, std::span<const double> low, std::span<const double> high) {
   table.columns.push_back(list_column(name + "_" + response, value));
@@ -235,7 +235,8 @@ CsvTable share_table(const StoredResult& result, const YieldResult& found) {
   return table;
 }
 
-/// Adds to `tables` a table of the yield under all limits together, and a table of the yields under each limit.
+/// Adds to `tables` the tables of the yield: under all limits together, under each limit, the shares of errors in the
+/// scatter of limited responses, the gradient by each error, and the rejected machines at each pose.
 void append_yield_tables(CsvTables& tables, const StoredResult& result, const YieldResult& found) {
   CsvTable all{"yield", {"limit", [](std::size_t) { return std::string("all"); }}, 1, {}, {}};
   for (const FieldRow<YieldResult>& field : kYield.fields) {

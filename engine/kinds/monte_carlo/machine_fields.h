@@ -8,8 +8,8 @@
 /// Reads and writes main effects, and the additional results of a Monte Carlo study with draws per machine.
 namespace poesy {
 
-/// Bytes of the numbers of main effects, and of the additional results with draws per machine, if axes have these
-/// lengths.
+/// The sizes in bytes of the numbers of main effects, and of the additional results with draws per machine, if the axes
+/// have these lengths.
 /// @{
 std::size_t effect_bytes(const AxisLengths& lengths);
 std::size_t machine_bytes(const AxisLengths& lengths);

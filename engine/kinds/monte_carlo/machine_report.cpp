@@ -35,7 +35,7 @@ Table values_table(const StoredResult& result) {
   const auto number = [&result](std::string name, std::string heading, const auto& values, int dispensable = 0) {
     return FilledColumn{number_column(std::move(name), std::move(heading), "", dispensable),
                         [&result, &values](std::size_t r) {
-                          return value_cell(values.row(r).back(), result.responses[r]);  // highest quantile
+                          return value_cell(values.row(r).back(), result.responses[r]);  // number, or highest quantile
                         }};
   };
   const MachineValues& largest = machines_of(result).largest;
@@ -87,7 +87,8 @@ bool has_correlated(const StoredResult& result) {
   return result.study_text.find("\n[[errors.correlated]]\n") != std::string::npos;
 }
 
-/// Whether some errors are drawn together with others of their feature and therefore have no index.
+/// Whether some errors are drawn together with the other errors of their feature from its tolerance zone, and therefore
+/// have no index.
 bool has_zone_shape(const StoredResult& result) {
   return result.drawing && result.study_text.find("\nzones = {") != std::string::npos &&
          result.study_text.find("\nzones = { distribution = \"normal\"") == std::string::npos;
@@ -139,8 +140,8 @@ std::string indices_note(const StoredResult& result, std::size_t r) {
       result.responses[r].name, number_text(sum, 3), has_noise ? ", and the noise of what was measured" : "");
 }
 
-/// Whether an error has the same value at all poses of a machine. Otherwise, a mean over the poses does not depend on
-/// one value of the error, so the error has no main-effect curve.
+/// Whether an error has a main-effect curve. An error that machines draw anew at each pose has none, because a mean
+/// over the poses does not depend on one value of the error.
 bool has_curve(const StoredResult& result, std::size_t p) {
   return result.factor_draws.empty() || result.factor_draws[p] != name(Draws::per_pose);
 }
@@ -153,7 +154,7 @@ Lines effect_curves(const StoredResult& result, ArrayPool& pool) {
   const std::size_t factors = result.factors.size();
   std::vector<double> below;
   for (std::size_t k = 0; k < kEffectBins; ++k) below.push_back((static_cast<double>(k) + 0.5) / kEffectBins);
-  // The number of curves that are shown at first. The bands of more curves would hide each other.
+  // The number of curves that are shown at first. The interval bands of more curves would hide each other.
   constexpr std::size_t kAtFirst = 5;
   Lines lines{.x = {"share of the error's values below", "%", pool.add("effect_bin", below, 0.01)},
               .panels = {},

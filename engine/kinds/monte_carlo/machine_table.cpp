@@ -50,8 +50,8 @@ ErrorScores scores_of(const Plan& plan) {
   return scores;
 }
 
-/// The scores of the errors that are drawn as `draws` says, per pose or per machine. The scores of the others are
-/// empty.
+/// The scores of those errors that each machine draws once (Draws::per_machine), or of those that it draws anew at each
+/// pose (Draws::per_pose). The scores of the other errors are empty.
 ErrorScores scores_of(const Plan& plan, const ErrorScores& all, Draws draws) {
   const auto is_one = [&](std::size_t p) { return plan.is_per_pose(p) == (draws == Draws::per_pose); };
   ErrorScores scores{std::vector<ErrorScore>(all.each.size())};
@@ -64,11 +64,12 @@ ErrorScores scores_of(const Plan& plan, const ErrorScores& all, Draws draws) {
   return scores;
 }
 
-/// The number of machines with which the gradient of the yield by a linear map takes about a second. 0 if this gradient
-/// is not wanted or not possible.
+/// The number of machines from which the gradient of the yield is estimated by a linear map from the errors to the
+/// responses. With so many machines the estimate takes about a second, but there are at least kLeast and at most kMost.
+/// 0 if this gradient is not wanted or not possible.
 std::size_t mapped_machines(const Plan& plan, const LimitedVectors& vectors, const ErrorScores& scores) {
-  constexpr std::size_t kMostWork = 1'000'000'000;  // number of products
-  constexpr std::size_t kWorkOfRange = 10;  // number of products that find the range in which one error keeps one limit
+  constexpr std::size_t kMostWork = 1'000'000'000;  // multiplications for all machines
+  constexpr std::size_t kWorkOfRange = 10;  // multiplications to find the range in which one error keeps one limit
   constexpr std::size_t kLeast = 1000;
   constexpr std::size_t kMost = 1'000'000;
   const bool is_wanted = std::ranges::any_of(
@@ -91,8 +92,8 @@ MachineTable::MachineTable(const Plan& plan, const Model& model, const Analysis&
       fixed_scores_(scores_of(plan, scores_, Draws::per_machine)),
       pose_scores_(scores_of(plan, scores_, Draws::per_pose)),
       vectors_(plan, model, analysis),
-      // A linear map from the errors to the responses contains neither the noise of measurements, which also rejects
-      // machines, nor limits over poses.
+      // There are no mapped machines if machines are calibrated or a limit is over several poses, because a linear map
+      // from the errors to the responses contains neither the noise of measurements nor such a limit.
       mapped_(calibration != nullptr || any_over_poses(analysis.limits) ? 0 : mapped_machines(plan, vectors_, scores_)),
       kept_(keep_all && has_limits_ ? plan.samples() : mapped_) {
   POESY_EXPECTS(plan.draws() == Draws::per_machine);
@@ -105,8 +106,8 @@ MachineTable::MachineTable(const Plan& plan, const Model& model, const Analysis&
 }
 
 std::size_t MachineTable::unit_machines(std::size_t poses, UnitSize size_wanted) {
-  // Numbers of machines in a unit. With 500, rows of numbers are nearly one page of memory apart, and the solver is a
-  // third slower.
+  // Numbers of machines in a unit. With 500, rows of numbers would be nearly one page of memory (4096 bytes) apart,
+  // which makes the solver a third slower.
   constexpr std::array<std::size_t, 4> kSizes{1000, 200, 100, 40};
   static_assert(std::ranges::all_of(kSizes, [](std::size_t size) { return Plan::kUnitSamples % size == 0; }));
   constexpr std::size_t kMostSamples = 160'000;

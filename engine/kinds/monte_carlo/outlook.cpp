@@ -45,8 +45,8 @@ MemoryOutlook sum_of(const MemoryOutlook& a, const MemoryOutlook& b) {
 
 MemoryOutlook monte_carlo_memory(const Study& study, const Model& model, const Plan& plan) {
   const std::size_t responses = study.model().responses.size();
-  // Numbers computed from a sketch: quantiles with both ends of their intervals, and for Judge::share the
-  // share_magnitude.
+  // Numbers that are computed from the sketch of a response at a pose: quantiles with both ends of their intervals, and
+  // for Judge::share the share_magnitude.
   const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
   const std::size_t of_sketch = 3 * asked.quantiles.size() + (asked.judge == Judge::share ? 1 : 0);
   const MemoryOutlook of_pose{responses * sizeof(Moments) + sizeof(FailedSamples) + sizeof(SolveCounts) + sizeof(Bytes),
@@ -71,7 +71,8 @@ MemoryOutlook monte_carlo_memory(const Study& study, const Model& model, const P
   memory.file += numbers;
   if (machines) return sum_of(memory, machine_memory(study, model, plan));
   if (!plan.adaptive()) return memory;
-  // The next round of adaptive sampling continues from packed sketches of the finished poses, each of this many bytes.
+  // The next round of adaptive sampling continues from packed sketches of the finished poses; kPackedSketch is the size
+  // of one sketch in bytes.
   constexpr std::size_t kPackedSketch = 6000;
   const std::size_t kept =
       std::min(plan.poses().size() * responses * kPackedSketch, MonteCarloCollector::kMostKeptBytes);
@@ -90,7 +91,8 @@ PoseSet first_of(const PoseSet& poses, std::size_t most) {
   return PoseSet(poses.coordinates(), std::move(some));
 }
 
-/// A small version of a study that draws per pose. It has a few poses and units of the study, and its work is timed.
+/// A small version of a study that draws per pose, with a few of its poses and units. Its work is timed to estimate the
+/// time of the whole study.
 class PoseTrial {
  public:
   PoseTrial(const Study& study, const Model& model, const PoseSet& poses)
@@ -105,7 +107,8 @@ class PoseTrial {
     effects_ = std::exchange(unit_.effects, std::nullopt);
     fill();
   }
-  /// Merges the unit at all poses of the trial. Returns the samples merged as a share of those of the study.
+  /// Merges the unit at all poses of the trial. Returns the number of merged samples, as a share of all samples of the
+  /// study.
   double merge() {
     fill();
     return static_cast<double>(plan_.solves()) / solves_;
@@ -119,8 +122,8 @@ class PoseTrial {
  private:
   static constexpr std::size_t kPoses = 8;
 
-  /// The number of samples at each pose of the trial: whole units, and for a large study so many that the work of
-  /// finishing a pose takes little of the time.
+  /// The number of samples at each pose of the trial: up to kMostUnits full units, so that the work of finishing a pose
+  /// takes little of the time. A study with less than one unit has all its samples.
   static std::size_t samples(std::size_t of_study) {
     constexpr std::size_t kMostUnits = 8;
     if (of_study < Plan::kUnitSamples) return of_study;
@@ -143,9 +146,9 @@ class PoseTrial {
   std::optional<MonteCarloCollector> collect_;
 };
 
-/// A small version of a study with draws per machine, at some of its poses. It has many poses, because some work is
-/// done once for each machine or only at the few poses of main effects. With many poses, this work takes about the same
-/// share of the time as in the study.
+/// A small version of a study with draws per machine, at up to kPoses of its poses. Its work is timed to estimate the
+/// time of the whole study. Some work is done once for each machine, or only at the few poses of main effects; with
+/// many poses it takes about the same share of the time as in the study.
 class MachineTrial {
  public:
   MachineTrial(const Study& study, const Model& model, const PoseSet& poses)
@@ -163,7 +166,8 @@ class MachineTrial {
   MachineTrial(const MachineTrial&) = delete;
   MachineTrial& operator=(const MachineTrial&) = delete;
 
-  /// Solves as many machines as a unit of the study has. Returns the number of solves as a share of those of the study.
+  /// Solves as many machines as a unit of the study has. Returns the number of solves, as a share of all solves of the
+  /// study.
   double solve() {
     static_cast<void>(evaluate_(0));
     return share_of(unit_table_.unit(0).count);
@@ -217,7 +221,7 @@ class MachineTrial {
   std::optional<MachineCalibration> calibration_;
   MachineTable table_;  ///< all machines, for merging; without calibration, because merging does not depend on it
   Plan unit_plan_;
-  MachineTable unit_table_;  ///< the first machines: as many as a unit of the study has
+  MachineTable unit_table_;  ///< the machines of one unit of the study
   MachineUnitEvaluator evaluate_;
   MachineUnit unit_;
   std::vector<QuantileSketch> sketches_;  ///< sketch of each response at one pose

@@ -15,7 +15,7 @@ namespace {
 
 double density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi); }
 
-/// For each x_i: the sum of y over all larger x, plus half of y over all equal x.
+/// For each x[i]: the sum of y[j] over all j with x[j] > x[i], plus half of the sum over all j with x[j] == x[i].
 std::vector<double> sums_above(std::span<const double> x, std::span<const double> y) {
   std::vector<std::size_t> order(x.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -33,7 +33,7 @@ std::vector<double> sums_above(std::span<const double> x, std::span<const double
   return sums;
 }
 
-/// The grade of each x: the share of all x that are below it, minus 1/2.
+/// The grade of each x: the share of all x that are below it, plus half of the share that equals it, minus 1/2.
 std::vector<double> grades(std::span<const double> x) {
   const auto n = static_cast<double>(x.size());
   std::vector<double> found = sums_above(x, std::vector<double>(x.size(), 1.0));
@@ -46,8 +46,8 @@ double mean_product(std::span<const double> a, std::span<const double> b) {
 }
 
 /// The derivatives d rho / dw_i of Spearman's rho = E[a b] / sqrt(E[a^2] E[b^2]) with respect to the weight of part i,
-/// where a and b are the grades of x and y. Each derivative is the sum of the part's own product and of the effect of
-/// its weight on the grades of all parts.
+/// where a and b are the grades of x and y. Each derivative has a term from the product a b of the part itself, and
+/// terms from the effect of its weight on the grades of all parts.
 std::vector<double> rank_moves(std::span<const double> x, std::span<const double> y) {
   const auto n = static_cast<double>(x.size());
   const std::vector<double> a = grades(x);
@@ -63,12 +63,13 @@ std::vector<double> rank_moves(std::span<const double> x, std::span<const double
   return moves;
 }
 
-/// The correlation of normal scores with this rank correlation (Spearman), and its derivative.
+/// The correlation of two normal scores whose rank correlation (Spearman) is `rank`, and its derivative with respect to
+/// `rank`.
 double score_correlation(double rank) { return 2.0 * std::sin(std::numbers::pi / 6.0 * rank); }
 double score_slope(double rank) { return std::numbers::pi / 3.0 * std::cos(std::numbers::pi / 6.0 * rank); }
 
-/// [pairs x parts] The derivatives of the correlations of normal scores with respect to the weights of the parts, if
-/// the correlations are those of the measured values.
+/// [pairs x parts] The derivatives of the correlations of normal scores with respect to the weights of the parts. Empty
+/// if the correlations are not those of the measured values.
 std::vector<double> correlation_moves(std::span<const SmoothedValues> parts, std::span<const double> correlation) {
   constexpr double kSame = 1e-9;
   std::vector<double> moves;
@@ -84,7 +85,7 @@ std::vector<double> correlation_moves(std::span<const SmoothedValues> parts, std
   return moves;
 }
 
-/// The inverse of a positive definite matrix [k x k], column by column.
+/// The inverse of a symmetric positive definite matrix [size x size].
 std::vector<double> inverse_of(std::span<const double> matrix, std::size_t size) {
   const std::vector<double> triangle = lower_triangle(matrix);
   std::vector<double> inverse(matrix.size(), 0.0);
@@ -110,7 +111,7 @@ struct Range {
 
   bool single() const { return low == high; }
   bool holds(double x) const { return low <= x && x <= high; }
-  /// The probability that the smoothed value is below x.
+  /// The probability that the smoothed value is below x, plus half of the probability that it equals x.
   double share(double x) const {
     if (single()) return x == low ? 0.5 : static_cast<double>(x > low);
     return std::clamp((x - low) / (high - low), 0.0, 1.0);
@@ -121,8 +122,8 @@ Range range_of(const SmoothedValues& parts, std::size_t i) {
   return {parts.values()[i] - parts.half_widths()[i], parts.values()[i] + parts.half_widths()[i]};
 }
 
-/// Adds to `influence` [parts] the derivative of the logarithm of the density f at x with respect to each part's
-/// weight: g_i / f - 1, where g_i is the density of the smoothed value of part i.
+/// Adds to `influence` [parts] the derivative of ln f with respect to the weight of each part, where f is the density
+/// of one error at the value x. It is g_i / f - 1, where g_i is the density of the smoothed value of part i at x.
 void add_density(const SmoothedValues& parts, double x, std::span<double> influence) {
   const std::size_t n = influence.size();
   bool single = false;  // whether x equals a value that is not smoothed, whose density outweighs all others
@@ -138,9 +139,9 @@ void add_density(const SmoothedValues& parts, double x, std::span<double> influe
   for (std::size_t i = 0; i < n; ++i) influence[i] += static_cast<double>(n) * own(i) / sum - 1.0;
 }
 
-/// Adds to `influence` [parts] the derivative of the logarithm of the density with respect to each part's weight, as
-/// far as it acts through the normal scores of correlated errors. These scores depend on the share of the parts below
-/// x.
+/// Adds to `influence` [parts] those terms of the derivative of the logarithm of the joint density of correlated errors
+/// x [errors], with respect to the weight of each part, that add_density() leaves out: the terms from the normal scores
+/// of the errors, which depend on the share of the parts below x, and from the correlations of the scores.
 void add_scores(const PartGroup& group, std::span<const double> x, std::span<double> influence) {
   const std::size_t size = group.errors.size();
   const std::size_t n = group.size();

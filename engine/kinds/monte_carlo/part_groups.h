@@ -16,7 +16,7 @@ namespace poesy {
 struct PartGroup {
   std::vector<std::size_t> errors;    ///< [errors] positions of the errors among all errors
   std::vector<SmoothedValues> parts;  ///< [errors] measured values of each error, one for each part
-  /// [errors x errors] Inverse of the correlation matrix of the errors' normal scores; empty for a single error.
+  /// [errors x errors] Inverse of the correlation matrix of the normal scores of the errors; empty for a single error.
   std::vector<double> inverse;
   /// [k (k - 1) / 2 x n] Derivative of the correlation of each pair (1 0, 2 0, 2 1, ...) with respect to the weight of
   /// each part. Empty if correlations are stated and not computed from the parts.

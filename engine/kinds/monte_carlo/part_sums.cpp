@@ -69,7 +69,7 @@ Interval PartSums::interval(double conf_level) const {
   double squares = 0.0;
   for (std::size_t g = 0; g < sums_.size(); ++g) {
     const auto n = static_cast<double>(sums_[g].size());
-    // The square of a sum over few machines is biased; subtracting `squares_` removes the bias.
+    // The square of a sum over few machines is too large on average; subtracting `squares_` removes this bias.
     const double variance = (square_sum(sums_[g]) - squares_[g]) / (machines * machines * n * (n - 1.0));
     of_parts += variance;
     squares += variance * variance / (n - 1.0);

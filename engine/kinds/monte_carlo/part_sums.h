@@ -10,9 +10,12 @@
 
 namespace poesy {
 
-/// Sums the derivative of the probability p that a machine is rejected with respect to the weight of each measured
-/// part. Let f be the density of all errors, in which part i has the weight w_i = 1/n. Then dp/dw_i = E[1_reject d ln f
-/// / dw_i], so only rejected machines are added.
+/// Sums for the derivative of the probability p that a machine is rejected with respect to the weight of each measured
+/// part. Let f be the density of all errors, in which part i of n has the weight w_i = 1/n. Then
+///
+///     dp/dw_i = E[1_reject d ln f / dw_i]
+///
+/// where 1_reject is 1 for a rejected machine and 0 for a good one. So only rejected machines are added.
 class PartSums {
  public:
   /// Empty sums. Keeps a reference to the groups.

@@ -39,8 +39,8 @@ std::string quantile_name(double level) {
 
 std::string quantile_heading(double level) { return "q_" + shortest(level); }
 
-/// The columns of the table with numbers over the samples of all poses. Narrow tables omit the lowest quantiles first,
-/// then the smallest value. Mean, spread and high quantiles always stay.
+/// The columns of the table with numbers over the samples of all poses. If the table is too wide, the lowest quantiles
+/// are left out first, and then the smallest value; mean, spread and the highest quantile always stay.
 std::vector<FilledColumn> overall_columns(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   const auto number = [&result](std::string name, std::string heading, const auto& values, int dispensable = 0,
@@ -72,7 +72,8 @@ std::string overall_error_text(const StoredResult& result) {
   return quantile_error_text(result.headline, found.overall_quantile_error, found.overall_std);
 }
 
-/// The table over all poses. Precondition: there are poses and quantiles.
+/// The table of statistics over the samples of all poses, with a row for each response. Precondition: there are poses
+/// and quantiles.
 Table overall_table(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   Table table{.name = "overall",
@@ -117,7 +118,7 @@ std::vector<double> at_poses(const MonteCarloResult::QuantilesAtPoses& quantiles
 struct WorstPoses {
   std::vector<double> quantile;  ///< [poses] highest quantile at each pose
   std::size_t worst;             ///< pose with the largest quantile
-  double low;                    ///< lower end of its interval
+  double low;                    ///< lower end of the interval of this quantile
   double high;
   std::vector<std::size_t> alike;  ///< other poses whose intervals reach above `low`, by decreasing quantile
 };
@@ -191,11 +192,11 @@ Table poses_table(const StoredResult& result) {
   return table;
 }
 
-/// The histogram of a response and its cumulative curve, as lines over the edges of the bins. The first and the last
-/// bin are left out, because they extend to the smallest and the largest sample.
+/// The histogram of a response and its cumulative distribution, as lines over the edges of the bins. The first and the
+/// last bin are left out, because they extend to the smallest and the largest sample.
 struct Outline {
-  std::vector<double> x;        ///< each bin's lower and upper end, in the unit shown
-  double width = 1.0;           ///< about the width of a bin, a round number, in the unit shown
+  std::vector<double> x;        ///< lower and upper end of each bin, in the unit shown
+  double width = 1.0;           ///< a round number, about the width of a bin, in the unit shown
   std::vector<double> density;  ///< share of the samples per `width`
   std::vector<double> below;    ///< share of the samples below x
 };
@@ -353,8 +354,8 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
   add_how_sure(result, tables, page);
 }
 
-/// [poses] The share of machines that are rejected at each pose, plus a small amount that is proportional to the root
-/// mean square of the limited responses there.
+/// [poses] The weight of each pose for predictions of the yield: the share of machines that are rejected there, summed
+/// over the limits, plus a small amount that is proportional to the root mean square of the limited responses there.
 std::vector<double> pose_weights(const MonteCarloResult& found, const Study& study) {
   constexpr double kSmall = 1e-6;
   std::vector<double> weights(found.poses(), 0.0);
@@ -369,8 +370,8 @@ std::vector<double> pose_weights(const MonteCarloResult& found, const Study& stu
   return weights;
 }
 
-/// Adds to the page the section that predicts the yield at other sizes of the errors. Adds nothing for calibrated
-/// machines.
+/// Adds to the page the section that predicts the yield at other sizes of the errors. Adds nothing if there is no
+/// yield, or if machines are calibrated.
 void add_solved_page(const ReportedResult& reported, Page& page) {
   const MonteCarloResult& found = monte_carlo_of(reported.stored);
   const Study& study = *reported.study;
@@ -426,8 +427,8 @@ std::map<std::string, double> shares_of_sources(const StoredResult& result, std:
   return sums;
 }
 
-/// Advice like "Make smaller first what adds most to the scatter of tip_z: flange (36 %), ...", with features or
-/// errors. Empty if their shares are not known.
+/// Advice such as "Make smaller first what adds most to the scatter of tip_z: flange (36 %), ...". It names features,
+/// and errors that belong to no feature. Empty if their shares are not known.
 std::string limit_drivers_text(const StoredResult& result) {
   constexpr std::size_t kMost = 3;
   const auto shares = response_shares(result);
@@ -447,7 +448,8 @@ std::string limit_drivers_text(const StoredResult& result) {
                      result.responses[shares->response].name, text);
 }
 
-/// Advice that follows from the verdicts if the study has limits, otherwise from the response.
+/// Advice on what to do next: which limits, machines or wanted yield the study needs, and which errors to make smaller.
+/// r: position of the response for which errors are named if the shares of the errors are not known.
 std::string advice(const StoredResult& result, std::size_t r) {
   using Decision = YieldVerdict::Decision;
   const std::optional<LimitVerdicts>& verdicts = result.verdicts;
@@ -512,8 +514,9 @@ void warn(const StoredResult& result, std::vector<std::string>& list) {
   if (std::string text = not_settled_text(result, settling(result)); !text.empty()) list.push_back(std::move(text));
 }
 
-/// The numbers over the samples of all poses that can be compared, with their names; quantiles in the order of the
-/// levels. The smallest and the largest sample are left out, because they depend on the number of samples.
+/// The statistics over the samples of all poses that can be compared, each with its name and as a function of the
+/// response; quantiles are in the order of the levels. The smallest and the largest sample are left out, because they
+/// depend on the number of samples.
 std::vector<std::pair<std::string, std::function<double(std::size_t r)>>> overall(const StoredResult& result) {
   const MonteCarloResult& found = monte_carlo_of(result);
   const auto of = [](const MonteCarloResult::Overall& numbers) { return [&](std::size_t r) { return numbers(r); }; };
@@ -547,8 +550,8 @@ ErrorShares error_shares(const StoredResult& result) {
           .at_poses = rms_at_poses(result, r)};
 }
 
-/// The numbers by which it is judged which of two results is better: the yield, and the root mean square of the
-/// response over all samples.
+/// The figures of merit by which two results are compared: the yield, and the root mean square of the response over all
+/// samples. name: name of the response; empty: the yield alone.
 std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
   const MonteCarloResult& found = monte_carlo_of(result);
   std::vector<Merit> list;

@@ -33,8 +33,8 @@ struct MonteCarloOptions {
 /// The kind of study in which all errors vary together, `monte-carlo`.
 extern const StudyKind kMonteCarloStudy;
 
-/// Statistics of one number of each machine, such as its largest magnitude, over the machines that are solved at every
-/// pose; SI.
+/// The distribution over the machines of a number that each machine has, such as its largest magnitude; SI. Machines
+/// that are not solved at every pose are left out.
 struct MachineValues {
   using Numbers = Array<double, axis::Response>;                    ///< a number for each response
   using Quantiles = Array<double, axis::Response, axis::Quantile>;  ///< all quantiles of each response
@@ -48,10 +48,10 @@ struct MachineValues {
   Numbers max;                                 ///< largest value
   Array<std::uint64_t, axis::Response> count;  ///< number of machines
   Quantiles quantiles;                         ///< quantiles, as order statistics
-  /// Lower ends of the intervals of quantiles, see MonteCarloResult.
+  /// Lower ends of the intervals of quantiles; infinite if there are too few machines for an end.
   Quantiles quantiles_ci_low;
   Quantiles quantiles_ci_high;  ///< upper ends of the intervals of quantiles
-  Numbers quantile_error;       ///< error bound of the quantiles, see MonteCarloResult::quantile_error
+  Numbers quantile_error;  ///< bound on |quantile - order statistic| for all quantiles; empty in results of version 0.2
   Array<double, axis::Response, axis::HistogramEdge> histogram_edges;         ///< edges of the histogram's bins
   Array<std::uint64_t, axis::Response, axis::HistogramBin> histogram_counts;  ///< number of machines in each bin
 };
@@ -64,8 +64,8 @@ struct PartsYield {
 };
 
 /// The yield: the share of machines that are within every limit at every pose. Unless stated otherwise, a machine that
-/// is not solved at some pose is a reject. Intervals are two-sided at conf_level (Clopper and Pearson). NaN for a
-/// response without a limit. Lists of `ci_low` and `ci_high` are the ends of the interval of the value before them.
+/// is not solved at some pose is a reject. Members NAME_ci_low and NAME_ci_high are the ends of the two-sided interval
+/// of NAME at conf_level; those of yields are by Clopper and Pearson. Numbers of a response without a limit are NaN.
 struct YieldResult {
   double conf_level = 0.95;            ///< confidence level of all intervals
   double value = 0.0;                  ///< the yield, an estimate
@@ -79,23 +79,25 @@ struct YieldResult {
   double unsolved_pass_ci_high = 0.0;  ///< upper end of the interval of unsolved_pass
   /// Number of rejects if a sample that is not solved counted as within every limit.
   std::uint64_t unsolved_pass_rejects = 0;
-  Array<double, axis::Response> by_response = {};  ///< share of machines that are within this limit at every pose
+  /// Share of machines that keep the limit of the response at every pose.
+  Array<double, axis::Response> by_response = {};
   Array<double, axis::Response> by_response_ci_low = {};   ///< lower ends of the intervals of by_response
   Array<double, axis::Response> by_response_ci_high = {};  ///< upper ends of the intervals of by_response
-  /// Share of machines that are not within this limit at the pose.
+  /// Share of machines that break the limit of the response and are beyond it, or not solved, at the pose. NaN for a
+  /// limit on the spread over the poses.
   Array<double, axis::Response, axis::Pose> worst_pose_share = {};
-  Array<double, axis::Factor> gradient = {};  ///< derivative of the yield with respect to the sigma of each error; NaN
-                                              ///< if not known
+  /// Derivative of the yield with respect to the sigma of each error, 1/m or 1/rad; NaN if not known.
+  Array<double, axis::Factor> gradient = {};
   /// Lower ends of the intervals of gradient, by the central limit theorem.
   Array<double, axis::Factor> gradient_ci_low = {};
   Array<double, axis::Factor> gradient_ci_high = {};  ///< upper ends of the intervals of gradient
-  /// Change of the yield if the sigma of an error is a tenth larger; NaN if not known. Files of version 0.2 do not have
+  /// Change of the yield if the sigma of an error grows by a tenth; NaN if not known. Files of version 0.2 do not have
   /// this list and the following ones.
   Array<double, axis::Factor> change = {};
   Array<double, axis::Factor> change_ci_low = {};   ///< lower ends of the intervals of change
   Array<double, axis::Factor> change_ci_high = {};  ///< upper ends of the intervals of change
-  /// Share of each error in the scatter of each limited response (its mean square about the mean over the machines,
-  /// over all poses); NaN if not known.
+  /// Share of each error in the scatter of each limited response (the mean square of the response about its mean over
+  /// the machines, over all poses); NaN if not known.
   Array<double, axis::Response, axis::Factor> mean_square_share = {};
   /// Lower ends of the intervals of mean_square_share.
   Array<double, axis::Response, axis::Factor> mean_square_share_ci_low = {};
@@ -105,9 +107,9 @@ struct YieldResult {
   /// Root mean square over the poses of the mean of each limited response over the machines; for a norm, of the mean of
   /// its vector. NaN if not known. Files of version 0.2 do not have this list and the next one.
   Array<double, axis::Response> offset = {};
-  Array<double, axis::Response> offset_share = {};  ///< share of the squared mean in the mean square of the response
+  Array<double, axis::Response> offset_share = {};  ///< share of the squared offset in the whole mean square
 
-  /// Whether the result has the lists of changes, those of shares, and those of offsets.
+  /// Whether the result has the lists of the changes of the yield, of the shares, and of the offsets.
   /// @{
   bool has_change() const { return !change.empty() && !change_ci_low.empty() && !change_ci_high.empty(); }
   bool has_shares() const {
@@ -119,7 +121,7 @@ struct YieldResult {
   std::optional<PartsYield> parts = {};  ///< interval with the uncertainty from few parts; set if errors are measured
 };
 
-/// The effect on each response of each error without its interactions.
+/// The effect of each error on each response, without interactions with other errors.
 struct MainEffects {
   /// A number for each response and error.
   using Indices = Array<double, axis::Response, axis::Factor>;
@@ -145,7 +147,7 @@ struct CalibrationYields {
   double best_ci_high = 0.0;         ///< upper end of the interval of best
   std::uint64_t not_fitted = 0;      ///< number of rejects that were not calibrated: they were not solved, or their fit
                                      ///< did not converge
-  std::uint64_t fitted = 0;          ///< number of fitted errors
+  std::uint64_t fitted = 0;          ///< number of fitted errors of each machine
   std::uint64_t measured = 0;        ///< number of measured values of each machine
   std::uint64_t measured_poses = 0;  ///< number of poses at which each machine is measured
 };
@@ -165,9 +167,9 @@ struct MachineResult {
 struct EffectResult {
   double conf_level = 0.95;             ///< confidence level of all intervals
   std::vector<std::uint64_t> s1_poses;  ///< poses over which the variances of `effects.s1` are summed
-  Array<double, axis::Factor, axis::EffectBin> bin_error;  ///< [errors x bins] mean of the error in each bin
-  /// Indices and curves. With draws per machine, curves are for the machines' means over all poses; with draws per
-  /// pose, for all samples at `s1_poses`.
+  Array<double, axis::Factor, axis::EffectBin> bin_error;  ///< mean of the error in each bin, SI
+  /// Indices and curves. With draws per machine, the curves show the mean of each machine over all poses; with draws
+  /// per pose, they show all samples at `s1_poses`.
   MainEffects effects;
 };
 
@@ -237,15 +239,17 @@ struct MonteCarloResult {
   SolveCounts total() const { return total_of(solves); }         ///< How the solves at all poses ended.
 };
 
-/// Bytes of the numbers of a result whose axes have these lengths. machines: whether errors are drawn per machine.
+/// The size in bytes of the numbers of a result whose axes have these lengths. machines: whether errors are drawn per
+/// machine.
 std::size_t monte_carlo_bytes(const AxisLengths& lengths, bool machines);
 
 /// The Monte Carlo result in a stored result. Its `failures`, `convergence` and `verdicts` are in StoredResult itself.
 /// Precondition: the result is of kind `monte-carlo`.
 inline const MonteCarloResult& monte_carlo_of(const StoredResult& result) { return found_of<MonteCarloResult>(result); }
 
-/// Two tables with a row for each response. The first has mean, spread, extremes and quantiles over the samples of all
-/// poses. The second has the mean of the poses' means, and the largest mean and highest quantile with their poses.
+/// The tables of a Monte Carlo result: statistics of each response over the samples of all poses, the worst poses of
+/// each response, and first-order indices. With draws per machine there are also tables of the machines; with limits
+/// also of the yield, of the errors on which it depends, and of the poses at which machines are rejected.
 std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOptions& options = {});
 
 }  // namespace poesy

@@ -19,7 +19,7 @@
 namespace poesy {
 namespace {
 
-/// The mean of each response over the samples of all poses.
+/// [responses] The mean over the samples of all poses, with its interval.
 std::vector<Estimate> overall_means(const MonteCarloResult& found) {
   std::vector<Estimate> means;
   for (std::size_t r = 0; r < found.responses(); ++r) {
@@ -28,7 +28,8 @@ std::vector<Estimate> overall_means(const MonteCarloResult& found) {
   return means;
 }
 
-/// The rule by which adaptive sampling ends: by the intervals of the means of the responses that a summary shows.
+/// The rule by which adaptive sampling ends: it compares the intervals of the means of the responses that a summary
+/// shows (the headline, or all responses if the model selects none).
 Rounds::Rule rule_of(const Model& model, const Analysis& analysis) {
   const ModelDescription& description = model.description();
   const std::size_t responses = description.responses.size();
@@ -90,7 +91,8 @@ struct MachineJob {
   }
 };
 
-/// The largest number of shards. A study with draws per machine is divided by units of machines, any other by poses.
+/// The largest number of shards. A study with draws per machine is divided into units of machines, a study with draws
+/// per pose into poses.
 std::size_t most_shards(const Study& study, std::size_t poses) {
   if (study.analysis.draws == Draws::per_pose) return shards_by_pose(study, poses);
   return MachineTable::units_for(study.analysis.samples, poses, MachineTable::unit_size(study.analysis));

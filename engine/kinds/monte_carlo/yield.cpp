@@ -103,7 +103,7 @@ YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::
     const std::size_t r = limit.response;
     set_estimate(good(counts.by_limit(r).strict), found.by_response, found.by_response_ci_low,
                  found.by_response_ci_high, r);
-    // Whether a spread over the poses keeps its limit is not decided at a single pose.
+    // A limit on the spread is judged over all poses together, so the shares at single poses remain NaN.
     if (limit.allowed.is_spread()) continue;
     std::ranges::transform(counts.at_pose.row(r), found.worst_pose_share.row(r).begin(),
                            [&](const Rejects& rejects) { return share(rejects.strict, n); });
@@ -255,7 +255,8 @@ LimitVerdicts judge_machines(std::span<const ResponseLimit> limits, double asked
     verdict.within = n - counts.by_limit(limit.response).strict;
     const std::uint64_t rank = asked == 0.0 ? n : quantile_rank(asked, n);
     const QuantileSketch& values = judged[limit.response];
-    const bool is_sorted = limit.allowed.is_plain() || limit.allowed.is_spread();  // such values are not negative
+    // Magnitudes and spreads are not negative, so a larger value is worse.
+    const bool is_sorted = limit.allowed.is_plain() || limit.allowed.is_spread();
     if (asked > 0.0) {
       verdict.value = is_sorted && rank <= values.count() ? values.order_statistic(rank)
                                                           : value_at_rank(values, limit.allowed, rank);

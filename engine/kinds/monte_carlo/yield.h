@@ -24,8 +24,8 @@ void set_estimate(const Estimate& estimate, Values& value, Values& low, Values& 
   high(at...) = estimate.interval.high;
 }
 
-/// Statistics over machines of one number of each machine, such as its largest magnitude. moments, sketches:
-/// [responses] of that number, over the machines that are solved at every pose.
+/// The distribution over the machines of a number that each machine has, such as its largest magnitude. moments,
+/// sketches: [responses] moments and sketch of this number over the machines that are solved at every pose.
 MachineValues machine_values(std::span<const Moments> moments, std::span<const QuantileSketch> sketches,
                              const Analysis& analysis);
 
@@ -45,13 +45,15 @@ void set_pose_gradient(const Plan& plan, const ScoreSums& scores, YieldResult& f
 /// `found`.
 PartsYield parts_yield(const PartSums& parts, const YieldResult& found);
 
-/// First-order indices, summed over the poses of `at_poses`, and main-effect curves from `curve`. errors: [errors]
-/// distribution of each error in its bins.
+/// First-order indices and main-effect curves. at_poses: the sums at each of the poses over which the variances of the
+/// indices are added up. curve: the sums from which the curves are computed. errors: [errors] distribution of each
+/// error in its bins.
 MainEffects main_effects(std::span<const MainEffectSums> at_poses, Dependence dependence, const MainEffectSums& curve,
                          std::span<const BinSpread> errors, std::size_t responses, double conf_level);
 
-/// Sets indices and curves to NaN for errors that are correlated, or drawn together with others of their feature. Other
-/// errors vary with such an error, and it is not computed from a single uniform number of its own.
+/// Sets indices and curves to NaN for errors that are correlated, or drawn together with others of their feature. A
+/// main effect is defined only for an error that varies independently of the others and is computed from one uniform
+/// number.
 void leave_out_dependent(const Plan& plan, MainEffects& effects);
 
 /// Sets indices and curves to NaN for errors that machines draw anew at each pose, because a machine has many values of
@@ -61,25 +63,26 @@ void leave_out_per_pose(const Plan& plan, MainEffects& effects);
 /// errors are valid if they were computed at single poses.
 void leave_out_curves_per_pose(const Plan& plan, MainEffects& effects);
 
-/// Sets indices and curves to NaN for responses that do not vary (stats/indices.h): at the poses over which the
-/// variances of indices are summed, or between machines. If some responses do not vary at any pose, records which.
-/// rounding: [responses] see joint_rounding() (run/response_rounding.h).
+/// Sets indices and curves to NaN for responses that do not vary (stats/indices.h) at the poses over which the
+/// variances of indices are summed, or between machines. Records in found.varies which responses vary at some pose, if
+/// not all do. rounding: [responses] see joint_rounding() (run/response_rounding.h).
 void leave_out_constant(std::span<const double> rounding, MonteCarloResult& found);
 
-/// The distribution of each error of a study in its bins.
+/// [errors] The distribution of each error within its bins of equal probability.
 std::vector<BinSpread> bin_spreads(const Plan& plan);
 
 /// A result of main effects at these poses, with the means of the errors in the bins but without indices and curves.
 EffectResult effect_result(std::span<const PoseIndex> poses, std::span<const BinSpread> errors, double conf_level);
 
-/// Judges the yield against the wanted yield (0: none). It is kept if the one-sided lower confidence bound is at least
-/// the wanted yield, and not kept if the one-sided upper bound is below it. solves: how the machines' solves at all
-/// poses ended.
+/// Judges the yield against the wanted yield `asked` (0: none). The wanted yield is kept if the one-sided lower
+/// confidence bound of the yield is at least `asked`, not kept if the one-sided upper bound is below `asked`, and
+/// otherwise undecided. solves: how the solves of the machines at all poses ended.
 YieldVerdict judge_yield(const YieldResult& found, const SolveCounts& solves, double asked);
 
-/// Judges the limits of a study with draws per machine: all together, and each alone. judged: [responses] values by
-/// which machines are judged (ValueLimit::deciding), of machines that are solved at every pose. counts: see yield_of();
-/// solves: see judge_yield().
+/// Judges the limits of a study with draws per machine: all together, and each alone. asked: the wanted yield; 0: none.
+/// judged: [responses] the values by which machines are judged: largest magnitudes, or ValueLimit::deciding() for a
+/// limit that is not plain, of machines that are solved at every pose. counts: the counts over all machines. solves:
+/// see judge_yield().
 LimitVerdicts judge_machines(std::span<const ResponseLimit> limits, double asked, const YieldResult& found,
                              const SolveCounts& solves, const MachineCounts& counts,
                              std::span<const QuantileSketch> judged);

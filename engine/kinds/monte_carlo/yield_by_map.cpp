@@ -17,7 +17,7 @@
 namespace poesy {
 namespace {
 
-/// The positions of a vector's components at all poses among the fitted components.
+/// The positions of the components of one vector, at all poses, in the list of all fitted components.
 std::vector<std::size_t> rows_of(const MachineTable& table, const LimitedVector& vector) {
   std::vector<std::size_t> rows;
   for (std::size_t m = 0; m < table.plan().poses().size(); ++m) {
@@ -39,7 +39,7 @@ std::vector<ErrorEffect> effects_on(const MachineTable& table, std::size_t respo
   return errors;
 }
 
-/// A limited vector at one pose, as a linear function of the errors in SI.
+/// The limit on a vector at one pose, with the vector as a linear function of the errors in SI.
 LinearLimit limit_at(const MachineTable& table, const LinearFit& fit, const LimitedVector& vector, std::size_t pose) {
   const std::size_t rows = table.vectors().rows();
   const ArrayView<const double, axis::Pose, axis::VectorRow, axis::Factor> slopes(
@@ -71,7 +71,7 @@ LinearLimits limits_of(const MachineTable& table, const LinearFit& fit) {
 }
 
 std::vector<std::optional<MappedError>> mapped_errors(const MachineTable& table) {
-  // Degree of the polynomial that corrects for machines that the linear map judges wrongly.
+  // Degree of the score by which the gradient is corrected for machines that the linear map judges wrongly.
   constexpr std::size_t kDegree = 2;
   std::vector<std::optional<MappedError>> errors;
   for (std::size_t p = 0; p < table.errors(); ++p) {
@@ -111,8 +111,8 @@ void set_shares(const MachineTable& table, const LinearFit& fit, double conf_lev
   }
 }
 
-/// Whether the linear map judges only few machines wrongly as good or rejected. If it misjudges many, the polynomial
-/// does not correct well enough.
+/// Whether the linear map judges only few machines wrongly as good or rejected. If it misjudges many, the correction by
+/// a score of low degree is not good enough.
 bool judges_well(const MappedGradient& gradient, std::span<const std::uint8_t> rejected) {
   constexpr double kMost = 0.3;  // largest number of misjudged machines, as a share of the rejects, or of the good
                                  // machines if there are fewer of these

@@ -29,11 +29,12 @@ namespace {
 /// The errors that cause most of the mean square of the response by which errors are ranked, and those that together
 /// cause hardly any of it.
 struct FewMatter {
-  /// Errors that together cause at least the share kMost of the mean square, largest first. If the last one that is
-  /// needed belongs to a family (Family), they contain all of the family.
+  /// Errors that together cause at least the share kMost of the mean square, largest first. If the last of these errors
+  /// belongs to a Family, the list contains the whole family.
   std::vector<std::string> names;
   double sum = 0.0;  ///< share of the mean square that these errors cause
-  /// Errors that together cause less than the share kHardly of the mean square, without copies of those in `names`.
+  /// Errors that together cause less than the share kHardly of the mean square. An error is left out if `names` has the
+  /// same error of another limb.
   std::vector<std::string> hardly;
 };
 
@@ -43,8 +44,8 @@ constexpr double kHardly = 0.01;
 /// this share of its effect.
 constexpr double kCalibrated = 0.9;
 
-/// The name of an error without the number of its limb: "rod_left" for "rod_left_3". Names of copies of one error
-/// differ in this number alone. The whole name if it does not end with a number.
+/// The name of an error without the number of its limb: "rod_left" for "rod_left_3". Names of the same error in
+/// different limbs (copies) differ only in this number. A name that does not end with a number is returned as a whole.
 std::string_view stem_of(std::string_view name) {
   const std::size_t end = name.find_last_not_of("0123456789");
   const bool has_number = end != std::string_view::npos && end > 0 && end + 1 < name.size() && name[end] == '_';
@@ -58,10 +59,11 @@ bool are_copies(std::string_view a, std::string_view b) {
   return a != b && has_number(a) && has_number(b) && stem_of(a) == stem_of(b);
 }
 
-/// Finds the errors between which a cut after the error `last` would be arbitrary.
+/// The errors that a list with the error `last` should contain as well: its copies in other limbs, errors whose effects
+/// cannot be distinguished from these, and the copies of all these errors.
 class Family {
  public:
-  /// among: the errors that may belong to the family.
+  /// among: positions of the errors that may belong to the family.
   Family(const StoredResult& result, std::size_t response, std::size_t last, std::span<const std::size_t> among)
       : result_(&result), shown_(shown_indices(result)), response_(response), among_(among), members_{last} {
     add_copies();
@@ -72,14 +74,14 @@ class Family {
   bool has(std::size_t p) const { return std::ranges::find(members_, p) != members_.end(); }
 
  private:
-  /// Adds the errors that are copies of a member in another limb.
+  /// Adds the errors that are copies of a member of the family in another limb.
   void add_copies() {
     add_if([&](std::size_t p, std::size_t member) {
       return stem_of(result_->factors[p].name) == stem_of(result_->factors[member].name);
     });
   }
 
-  /// Adds the errors whose effects are not told apart from that of a member: the intervals overlap.
+  /// Adds the errors whose effects cannot be distinguished from that of a member, because the intervals overlap.
   void add_alike() {
     add_if([&](std::size_t p, std::size_t member) { return low(p) <= high(member) && low(member) <= high(p); });
   }
@@ -104,7 +106,7 @@ class Family {
   std::vector<std::size_t> members_;
 };
 
-/// Finds the errors that FewMatter lists; none if an effect is not known, or if no error has an effect.
+/// Finds the errors that FewMatter lists. None if an effect is not known, or if no error has an effect.
 std::optional<FewMatter> few_matter(const StoredResult& result) {
   const std::size_t response = response_named(result, default_ranking(result));
   const MeanSquare found =
@@ -170,14 +172,14 @@ std::string sure_text(const StoredResult& result, const RankedErrors& ranked) {
                                         : " The indices hold at a tenth of the sizes as well.");
 }
 
-/// The errors with a large effect, by what can be done about it.
+/// The errors with a large effect, in two lists by what to do about them.
 struct Measures {
-  std::vector<std::string> calibrate;  ///< errors of which calibration can remove almost all
+  std::vector<std::string> calibrate;  ///< errors whose effect calibration can remove almost completely
   std::vector<std::string> hold;       ///< errors that need tight tolerances
-  double removable = 1.0;              ///< the smallest removable share among the errors to calibrate
+  double removable = 1.0;  ///< smallest share of its effect that calibration can remove from an error in `calibrate`
 };
 
-/// Returns true if the indices are those of the responses that remain after a calibration.
+/// Returns true if the indices describe the deviations that remain after a calibration.
 bool is_calibrated(const StoredResult& result) {
   return study_setting(result.study_text, "analysis", "calibrated") == "true" ||
          !study_setting(result.study_text, "analysis.calibration", "fit").empty();
@@ -197,7 +199,7 @@ Measures measures(const StoredResult& result, const std::vector<std::string>& na
   return found;
 }
 
-/// Names of errors in which copies are one item: "zero_1/2/3".
+/// The names of errors, in which the copies of an error in several limbs are joined to one item: "zero_1/2/3".
 std::vector<std::string> with_copies_together(const std::vector<std::string>& names) {
   std::vector<std::string> list;
   std::vector<std::string_view> stems;
@@ -220,14 +222,14 @@ std::vector<std::string> with_copies_together(const std::vector<std::string>& na
   return list;
 }
 
-/// "6 errors" if several of these names are shown as one item (with_copies_together()); otherwise empty.
+/// The number of errors as text, "6 errors", if with_copies_together() joins some of their names; otherwise empty.
 std::string count_of_copies(const std::vector<std::string>& names) {
   if (with_copies_together(names).size() == names.size()) return {};
   return counted(names.size(), "error", "errors");
 }
 
-/// "Calibrate zero_1/2/3 (3 errors, 100 % removable). Hold rod_left_1/2/3, rod_right_1/2/3 (6 errors) to tight
-/// tolerances. "
+/// The advice as text: "Calibrate zero_1/2/3 (3 errors, 100 % removable). Hold rod_left_1/2/3, rod_right_1/2/3 (6
+/// errors) to tight tolerances. "
 std::string measures_text(const Measures& found) {
   constexpr std::size_t kShown = 3;
   std::string text;
@@ -284,7 +286,7 @@ std::string worst_place_text(const StoredResult& result) {
     if (effects[m] > effects[worst]) worst = m;
   }
   const double ratio = effects.empty() ? 0.0 : effects[worst] * static_cast<double>(effects.size()) / sum;
-  // This also covers an unknown effect, because a comparison with NaN is false.
+  // The condition is also true for an unknown effect, because any comparison with NaN is false.
   if (!(ratio >= kHardlyDiffers)) return {};
   return fmt::format("The effect of {} on {} is largest at {}, {:.1f} times its mean over the poses.",
                      result.factors[error].name, result.responses[ranked.response].name, place_text(result, worst),

@@ -7,8 +7,8 @@
 
 namespace poesy {
 
-/// Two sentences: which errors cause most of the mean square, and how many errors together cause hardly any of it.
-/// Empty if an effect is not known, or if no error has an effect.
+/// Two sentences: which errors cause most of the mean square of the response by which errors are ranked, and how many
+/// errors together cause hardly any of it. Empty if an effect is not known, or if no error has an effect.
 std::string few_matter_text(const StoredResult& result);
 
 /// A sentence on the pose at which the most important error has its largest effect; empty if the effect hardly differs

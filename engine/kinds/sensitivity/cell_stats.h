@@ -28,7 +28,8 @@ struct CellStats {
   /// Reads or writes the statistics of one cell. first: number of the cell's first sample.
   void state(Archive& archive, std::size_t cell, std::uint64_t first);
   CellStats part(const NumberRange& cells) const;  ///< The statistics of a range of cells.
-  /// Adds the statistics of a unit of work to those of its cell. Precondition: see UnitStats::merge().
+  /// Adds the statistics of a unit of work to those of its cell. Precondition: the samples of the unit come after those
+  /// of the cell.
   void merge(std::size_t cell, const UnitStats& unit);
   /// Adds later samples of the same cells. Frees the memory of `later` step by step. Precondition: the samples of
   /// `later` come after those of this object.

@@ -21,16 +21,16 @@ namespace poesy {
 /// (history_points() in engine/run/evaluate_unit.h). When all poses of an error have reached a point, the global
 /// indices there are computed and the local indices are dropped. Errors are solved one after the other, so only the
 /// data of one error are in memory: 16 bytes for each response, pose and point. A continued run or a shard may also
-/// hold the data of errors whose poses it has only in part.
+/// hold the data of errors for which it has only some of the poses.
 class HistoryCollector {
  public:
   /// Keeps a reference to the plan.
   HistoryCollector(const Plan& plan, std::size_t responses, double conf_level);
 
   /// Adds the next unit of a cell (one error at one pose). within: [points x responses] local indices at the history
-  /// points inside the unit. cell: statistics of all samples of the cell up to this unit; only used if the unit ends at
-  /// a history point. A last unit with fewer samples ends at a history point only if it is also the first unit of its
-  /// cell.
+  /// points inside the unit. cell: statistics of all samples of the cell up to the end of this unit; only used if the
+  /// unit ends at a history point. A unit with fewer samples than a full unit ends at a history point only if it is the
+  /// only unit of its cell.
   void add(const WorkUnit& unit, std::span<const LocalIndex> within, const UnitStats& cell);
   /// The indices at all history points, ending with the final result `end`. Precondition: all units of all cells were
   /// added.
@@ -44,10 +44,10 @@ class HistoryCollector {
  private:
   /// The indices of one error at one history point, as far as they are known.
   struct Look {
-    std::size_t reached = 0;  ///< number of poses of the error that have as many samples
-    /// Local indices; empty when all poses have as many samples.
+    std::size_t reached = 0;  ///< number of poses that have reached the history point
+    /// Local indices at the poses that have reached the point; empty once all poses have.
     Array<LocalIndex, axis::Response, axis::Pose> local = {};
-    /// [responses] Global indices; empty until all poses have as many samples.
+    /// [responses] Global indices; empty until all poses have reached the point.
     std::vector<Estimate> global = {};
   };
   struct Point {
@@ -68,8 +68,8 @@ class HistoryCollector {
   Array<Look, axis::Factor, Point> looks_;
 };
 
-/// Merges the units of a sensitivity study, cell by cell; a cell is one error at one pose. Objects of this class are
-/// the sums of a PoseFold (run/pose_fold.h). The result of a cell depends only on the order of its own units.
+/// Merges the units of a sensitivity study, cell by cell; a cell is one error at one pose. PoseFold (run/pose_fold.h)
+/// adds the units to an object of this class. The result of a cell depends only on the order of its own units.
 class SensitivityCollector : public CellSums<CellStats> {
  public:
   /// Collects the cells of this shard of the plan. Keeps a reference to the plan.
@@ -80,7 +80,8 @@ class SensitivityCollector : public CellSums<CellStats> {
   /// The indices at the history points, ending with those of `end`. Precondition: all units of all cells were added,
   /// and the study has a fixed number of samples.
   EstimateCourse history(const SensitivityResult& end) const { return history_.history(end); }
-  /// Writes the statistics of all cells, or reads those of a plan with this many samples and adds them.
+  /// Writes the statistics of all cells; or reads those that a study with `samples` samples at each pose wrote, and
+  /// adds them.
   void state(Archive& archive, std::size_t samples);
 
  private:

@@ -15,7 +15,8 @@
 namespace poesy {
 namespace {
 
-/// A spread of a response up to this, SI, may be the rounding of a solver: kIndexRounding times an error of 1e-3.
+/// A standard deviation of a response below this number, SI, may be rounding of the solver. It is kIndexRounding times
+/// an error of 1e-3 (1 mm or 1 mrad).
 constexpr double kSpreadRounding = 1e-13;
 
 /// The results at two fidelities, with the dimensions of the responses and the standard deviations of the errors.
@@ -42,7 +43,7 @@ struct BothFidelities {
     return largest;
   }
 
-  /// The mean of a response minus the response to the background alone.
+  /// How much an error shifts a response: the mean of the response minus the response to the background alone.
   static double growth(const SensitivityResult& result, std::size_t response, std::size_t factor, std::size_t pose) {
     return result.mean(response, factor, pose) - result.background(response, pose);
   }
@@ -59,7 +60,7 @@ struct BothFidelities {
     return std::sqrt(sum / static_cast<double>(first.poses())) / sigma[factor];
   }
 
-  /// Whether the same number of an error's samples count in both results, at every pose.
+  /// Whether equally many samples of the error count in both results, for each response at each pose.
   bool same_samples(std::size_t factor) const {
     for (std::size_t r = 0; r < first.responses(); ++r) {
       if (!std::ranges::equal(first.count.row(r, factor), second.count.row(r, factor))) return false;
@@ -68,8 +69,8 @@ struct BothFidelities {
   }
 };
 
-/// The denominator of the ratios for one error and response: the effect at the first fidelity. NaN if the effect at
-/// both fidelities is rounding, 0 if only that at the first fidelity is.
+/// The denominator of the ratios for one error and response: the effect of the error at the first fidelity. If this
+/// effect is rounding: NaN if the effect at the second fidelity is rounding too, otherwise 0.
 double ratio_base(const BothFidelities& both, std::size_t response, std::size_t factor) {
   const double effect = both.effect(both.first, response, factor);
   if (!both.is_rounding(factor, effect)) return effect;
@@ -109,8 +110,8 @@ std::optional<std::size_t> largest(const Measure& measure, std::size_t factor) {
   return found;
 }
 
-/// Extends the list `columns` by two columns: each error's value of largest magnitude, in percent, and the response
-/// that has this value. Keeps references to the result and the measure.
+/// Extends the list `columns` by two columns: the value of the measure with the largest magnitude over the responses,
+/// in percent, and the response that has this value. Keeps references to the result and the measure.
 void add_largest(std::vector<FilledColumn>& columns, const StoredResult& result, const Measure& measure,
                  const std::string& name, int dispensable) {
   const auto value = [&measure](std::size_t p) {

@@ -52,7 +52,7 @@ const Group<Indices> kIndices{
      {"background", &Indices::background, kResponseUnit,
       "The response with all varied errors zero; NaN where that was not solved"}}};
 
-/// The field that states how much the ranking depends on the points of the platform's metric.
+/// The field that states how much the ranking of errors depends on the points of the platform's metric.
 const FieldRow<Indices> kRadiusTau{
     "radius_tau", &Indices::radius_tau, "1",
     "Kendall's tau of the errors' effects with the metric's points so far from their middle and as they are, to first "
@@ -97,8 +97,8 @@ void read_radius_tau(const h5::File& file, Indices& found) {
   if (!found.radius_tau.empty() && radii != kPointsRadii.size()) throw h5::Error("/radius_multiple is of other radii");
 }
 
-/// Appends columns to the table: the index by one estimator ("global", "global_corrected") and its interval. displayed:
-/// whether in display units instead of SI.
+/// Appends three columns to the table: the index by one estimator ("global" or "global_corrected"), and both ends of
+/// its interval. displayed: whether the columns are in display units instead of SI.
 void append_index_columns(CsvTable& table, const StoredResult& result, const std::string& estimator, std::size_t r,
                           bool displayed) {
   const NamedUnit& response = result.responses[r];

@@ -24,7 +24,8 @@ bool same_poses(const StoredResult& a, const StoredResult& b) {
   return true;
 }
 
-/// The effects at each pose (local index x sigma) in result b minus those in result a, for the errors that both have.
+/// [errors x poses] The effect (local index x sigma, SI) in result b minus that in result a, for the errors that both
+/// results have. response: its position in a, and in b.
 ErrorCells local_differences(const StoredResult& a, const StoredResult& b, const Common& factors,
                              std::pair<std::size_t, std::size_t> response) {
   const ErrorCells in_a = local_effects(a, response.first);

@@ -10,13 +10,14 @@
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/report/report_kind.h"
 
-/// Figures that are both on the page of a sensitivity result and on the page that compares two.
+/// Figures for the page of one sensitivity result and for the page that compares two results.
 namespace poesy {
 
 /// How the solves ended, for each error and pose.
 SolveTally sensitivity_tally(const StoredResult& result);
 
-/// The responses and poses that the figures show. Curves along a trajectory show the same numbers as the heat map.
+/// The responses and poses that the figures show. Each pose has one number per error and response, or two on a
+/// trajectory: one in the heat map, and the same number again in a curve.
 ShownCells sensitivity_cells(const StoredResult& result);
 
 /// [responses x errors] Indices in display units, either as effects (index x sigma) or as they are, with the responses
@@ -31,12 +32,13 @@ std::vector<std::vector<std::string>> units_of_indices(const StoredResult& resul
 /// A number for each error at each pose.
 using ErrorCells = Array<double, axis::Factor, axis::Pose>;
 
-/// Local indices x sigma of one response, SI.
+/// [errors x poses] The effects of all errors on one response at each pose: local index x sigma, SI, with rounding
+/// removed.
 ErrorCells local_effects(const StoredResult& result, std::size_t response);
 
 /// Bars that show these quantities for each error.
 Bars error_bars(const StoredResult& result, std::vector<BarQuantity> quantities);
-/// A quantity for bars that shows shares in percent.
+/// A quantity for bars that shows shares in percent. values: [errors] shares, where 1 is 100 %.
 BarQuantity share_quantity(std::string label, const std::string& array, std::span<const double> values,
                            ArrayPool& pool);
 
@@ -53,25 +55,25 @@ struct PoseOrder {
 /// this.
 inline constexpr double kClearCorrelation = 0.8;
 
-/// The root sum of squares over the errors, at each pose.
+/// [poses] The root sum of squares of the numbers of all errors at each pose.
 std::vector<double> root_sum_squares(const ErrorCells& cells);
 
-/// The order of the poses whose rank correlation with `values` is largest in magnitude: by a coordinate, or by the
-/// magnitude of a coordinate that has both signs. Among equal ones, the first coordinate, and a coordinate before its
-/// magnitude. None if no correlation is known.
+/// The order of the poses whose rank correlation with `values` [poses] is largest in magnitude: by a coordinate, or by
+/// the magnitude of a coordinate that has both signs. If several correlations are equal, the first coordinate is taken,
+/// and a coordinate rather than its magnitude. None if no correlation is known.
 std::optional<PoseOrder> explaining_order(const StoredResult& result, std::span<const double> values);
 
-/// The name of the order in which a heat map of these cells first shows its poses: the one that correlates best with
-/// the root sum of squares over the errors. Empty if there is none, or on a trajectory, whose poses already have an
-/// order.
+/// The name of the order in which a heat map of these cells first shows its poses: the order that correlates best with
+/// the root sum of squares over the errors. Empty if no correlation is known, or on a trajectory, whose poses are
+/// ordered by time.
 std::string first_order(const StoredResult& result, const ErrorCells& cells);
 
 /// The quantities in which two sensitivity results are compared: effects, indices, and the root mean square of all
 /// errors together.
 Comparable comparable_sensitivity(const StoredResult& result, const StoredResult& other);
 
-/// The number by which it is judged which of two results is better: the root mean square of the response over samples
-/// and poses, predicted from the effects of single errors.
+/// The figure of merit by which two results are compared: the root mean square of the response over samples and poses,
+/// predicted from the effects of single errors.
 std::vector<Merit> sensitivity_merits(const StoredResult& result, std::string_view response);
 
 /// Adds to the page the sections that compare two results: rankings, differences, and where in the workspace they

@@ -19,14 +19,15 @@ std::vector<LocalIndex> local_indices(std::span<const Moments> at_poses, double 
   return indices;
 }
 
-/// The corrected index of one error for one response; NaN if it is too small to be distinguished from rounding.
+/// The corrected global index of one error for one response; NaN if the error is too small for its effect to be
+/// distinguished from rounding.
 Estimate told_index(std::span<const LocalIndex> poses, double rounding, double conf_level) {
   const Estimate index = corrected_global_index(poses, conf_level);
   return is_too_small_to_tell(index.value, rounding) ? Estimate{kNaN, {kNaN, kNaN}} : index;
 }
 
-/// The numbers of all cells (one error at one pose), which are appended cell by cell. Reserved memory takes no space
-/// until it is written.
+/// The numbers of all cells (one error at one pose) for all responses, which are appended one by one. Memory is
+/// reserved for all of them; it takes no space until it is written.
 class CellNumbers {
  public:
   explicit CellNumbers(std::size_t cells) {

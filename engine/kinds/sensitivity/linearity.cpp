@@ -25,12 +25,12 @@
 namespace poesy {
 namespace {
 
-/// The number of sizes at which draws are solved: the study's, and a tenth of it.
+/// The number of sizes at which each draw is solved: the size in the study, and a tenth of it.
 constexpr std::size_t kSizes = 2;
 constexpr std::size_t kSigns = 2;
 constexpr std::array kScales{1.0, -1.0, kSmallerSize, -kSmallerSize};
 
-/// The number of poses at which draws are solved at the study's size and at a tenth of it.
+/// The number of poses at which linearity is checked.
 std::size_t chosen_poses(const Plan& plan) { return some_poses(plan.poses().size()); }
 
 /// The draws of one cell (one error at one of chosen_poses()) that are solved again at another size. chosen_cell:
@@ -56,7 +56,7 @@ class CellEvaluator {
 
   CellIndices operator()(std::size_t cell) {
     const WorkUnit unit = first_draws(*plan_, cell);
-    // Both sizes together, because a model prepares for a pose once.
+    // Both sizes are solved in one call, so that the model prepares for the pose only once.
     const UnitOutcomes found = solve_.solve(unit, kScales);
     const std::size_t draws = kSigns * unit.count;
     const ArrayView<const double, axis::Response, ErrorSize, axis::Sample> responses(found.responses,
@@ -85,8 +85,8 @@ class CellEvaluator {
   UnitEvaluator solve_;
 };
 
-/// Collects the local indices of one error after the other, and computes the changes of an error's indices when those
-/// of all its poses are collected.
+/// Collects the local indices of one error after the other. When those at all poses of an error are collected, computes
+/// how its global indices change with size.
 struct ChangeSums {
   const Plan* plan;
   std::vector<double> rounding;  ///< [responses] rounding of each response
@@ -108,8 +108,7 @@ struct ChangeSums {
     for (std::size_t r = 0; r < rounding.size(); ++r) changes(r, slot) = change(r, slot);
     for (std::vector<LocalIndex>& poses_of_one : at_poses) poses_of_one.clear();
   }
-  /// Reads or writes all changes. They are only read or written after the last cell, because there is no checkpoint
-  /// before.
+  /// Reads or writes all changes. Called only after the last cell, because this job has no checkpoints.
   void state(Archive& archive, const NumberRange&) { archive.reals(changes.all()); }
 
  private:
@@ -150,17 +149,17 @@ std::span<const double> changes_of(const StoredResult& result, std::size_t respo
 /// A change as text: "-99.1 %".
 std::string change_text(double change) { return fmt::format("{:+.1f} %", 100.0 * change); }
 
-/// The size at which to study an error, as a multiple of the studied size. If the index is proportional to a power of
-/// the size, a study at this size gives about this size as tolerance. ratio: tolerance divided by studied size; change:
-/// relative change of the index at a tenth of the size.
+/// The size at which to study an error, as a multiple of the size in the study. If the index is proportional to a power
+/// of the size, a study at the returned size gives about this size as tolerance. ratio: tolerance divided by the size
+/// in the study; change: relative change of the index at a tenth of the size.
 double corrected_ratio(double ratio, double change) {
   constexpr double kFallsTooFast = -0.9;
   const double power = -std::log10(1.0 + change);
   return std::isfinite(power) && power > kFallsTooFast ? std::pow(ratio, 1.0 / (1.0 + power)) : ratio;
 }
 
-/// The size at which to study an error, computed from its first proposed tolerance that differs much from the studied
-/// size (kSameSize); none if no tolerance differs so much.
+/// The size (SI) at which to study an error, computed from the first proposed tolerance of the error that differs much
+/// from the studied size (kSameSize). None if no tolerance differs so much.
 std::optional<double> size_to_study(const ResponseTolerances& tolerances, std::size_t factor, double studied,
                                     double change) {
   for (const std::span<const double> proposed : proposed_tolerances(tolerances)) {

@@ -13,13 +13,13 @@
 #include "engine/run/run_options.h"
 #include "engine/study/plan.h"
 
-/// Computes whether the indices of a sensitivity study also hold for errors of other sizes. Each run of such a study
-/// does this, and its result states it.
+/// Checks whether the indices of a sensitivity study also hold for errors of other sizes. Each run of a sensitivity
+/// study makes this check, and its result states the outcome.
 namespace poesy {
 
-/// The number of draws of each error that are solved again to check linearity, at the study's size and at a tenth of
-/// it, at each of some poses. They are the first draws of the study, or all if there are fewer. Their mirror images,
-/// with opposite signs, are solved as well.
+/// The number of draws of each error that are solved again to check linearity, at up to kSomePoses poses
+/// (run/evaluate_unit.h), at the study's size and at a tenth of it. They are the first draws of the study, or all if
+/// there are fewer. Their mirror images, with opposite signs, are solved as well.
 inline constexpr std::size_t kLinearityDraws = 16;
 
 /// The smaller size at which draws are solved again, as a multiple of the study's size.
@@ -49,7 +49,7 @@ Cell change_cell(double change);
 /// The errors that have an effect on the response and whose index changes with size, the largest change first.
 std::vector<std::size_t> changing_errors(const StoredResult& result, std::size_t response);
 
-/// What is said instead of a text on other sizes if the samples were solved to first order.
+/// The text that replaces a statement on other sizes if the samples were solved to first order.
 inline constexpr std::string_view kSizesNotTested =
     "solved to first order in the errors, so it is not tested whether indices hold at other sizes";
 
@@ -77,12 +77,12 @@ std::string negligible_text(const StoredResult& result, const ResponseTolerances
 /// A tolerance differs much from the studied size if their ratio is above this number or below its inverse.
 inline constexpr double kSameSize = 2.0;
 
-/// A text on the errors whose index changes with size and of which some tolerance differs much from the studied size
-/// (kSameSize). With a limit, an error has two tolerances, one for each way to share the limit. The text names for each
-/// error the size at which to study it: "2 errors have an index on gap that changes with size, by so much at a tenth of
-/// it, and a tolerance of another size than was studied: epsilon_3_4_z (-99.1 %; study it at 0.02 deg), ...". At most
-/// ten errors are named, the largest change first. If the index is a power of the size, a study at the named size gives
-/// about this size as tolerance. Empty if there are no such errors.
+/// A text on the errors whose index changes with size and that get a tolerance which differs much from the studied size
+/// (kSameSize). With a limit, an error has two tolerances, one of equal effect and one equal to those of other errors.
+/// The text names for each error the size at which to study it: "2 errors have an index on gap that changes with size,
+/// by so much at a tenth of it, and a tolerance of another size than was studied: epsilon_3_4_z (-99.1 %; study it at
+/// 0.02 deg), ...". At most ten errors are named, the largest change first. If the index is a power of the size, a
+/// study at the named size gives about this size as tolerance. Empty if there are no such errors.
 std::string wrong_sizes_text(const StoredResult& result, const ResponseTolerances& tolerances);
 
 }  // namespace poesy

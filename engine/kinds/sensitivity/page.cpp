@@ -25,7 +25,7 @@
 namespace poesy {
 namespace {
 
-/// An interval is called wide if the distance of an end from the index is more than this share of the index.
+/// An interval is called wide if one of its ends is farther from the index than this share of the index.
 constexpr double kWideInterval = 0.10;
 
 constexpr std::string_view kCorrected =
@@ -58,7 +58,7 @@ void add_which_errors_matter(const StoredResult& result, std::span<const Table> 
   section.table(tables, "ranked");
 }
 
-/// The numbers of these errors at all poses, one error after the other in the order of `rows`.
+/// The numbers at all poses of the errors in `rows`, one error after the other.
 std::vector<double> in_order(const ErrorCells& cells, std::span<const std::size_t> rows) {
   std::vector<double> list;
   list.reserve(cells.size());
@@ -66,8 +66,8 @@ std::vector<double> in_order(const ErrorCells& cells, std::span<const std::size_
   return list;
 }
 
-/// Layers of a heat map with a row for each error, in this order, and a column for each pose: effects, and samples that
-/// did not converge.
+/// Layers of a heat map: effects, and shares of samples that did not converge. It has a row for each error, in the
+/// order of `rows`, and a column for each pose.
 std::vector<HeatLayer> layers(const StoredResult& result, std::span<const std::size_t> rows,
                               const PoseFigures& figures) {
   std::vector<HeatLayer> list;
@@ -97,7 +97,8 @@ Lines along_trajectory(const StoredResult& result, const PoseFigures& figures) {
   return lines;
 }
 
-/// A sentence on the coordinate with which the effects of all errors grow or fall; empty if there is no clear one.
+/// A sentence on the pose coordinate with which the combined effect of all errors grows or falls. Empty if no
+/// correlation is as large as kClearCorrelation.
 std::string trend_text(const StoredResult& result) {
   const std::size_t r = response_named(result, default_ranking(result));
   const auto order = explaining_order(result, root_sum_squares(local_effects(result, r)));
@@ -137,12 +138,12 @@ void add_where(const StoredResult& result, Page& page) {
   figures.add_workspace(section, std::move(fields));
 }
 
-/// The indices after growing numbers of samples.
+/// The estimates of the global indices after increasing numbers of samples.
 EstimateCourse course_of(const StoredResult& result) {
   return result.convergence ? with_ends(result.convergence->course) : sensitivity_of(result).history.value();
 }
 
-/// Curves of the effects on each response over the number of samples, in the order of importance.
+/// Curves of the effect of each error on each response over the number of samples, most important error first.
 Lines effects_over_samples(const StoredResult& result, const EstimateCourse& course, ArrayPool& pool) {
   Lines lines = over_samples(course, pool);
   for (const std::size_t r : headline_order(result)) {

@@ -15,7 +15,7 @@
 namespace poesy {
 namespace {
 
-/// The points, moved to this multiple of their distance from their common middle.
+/// The points, each moved to `multiple` times its distance from the middle of all points.
 std::vector<PlatformPoint> at_radius(std::vector<PlatformPoint> points, double multiple) {
   PlatformPoint middle{};
   for (const PlatformPoint& point : points) {
@@ -37,7 +37,7 @@ std::optional<MechanismChoice> to_first_order(MechanismChoice mechanism) {
   return mechanism;
 }
 
-/// The model of the mechanism with these points as those of its metric; null if the mechanism refuses them.
+/// The model of the mechanism if the platform's metric uses these points; null if the mechanism refuses them.
 std::unique_ptr<Model> model_with(MechanismChoice mechanism, std::vector<PlatformPoint> points) {
   mechanism.points = std::move(points);
   try {
@@ -47,8 +47,8 @@ std::unique_ptr<Model> model_with(MechanismChoice mechanism, std::vector<Platfor
   }
 }
 
-/// The effects of all errors on all responses (index x sigma), by the published estimator. Poses at which the model has
-/// no solution are left out.
+/// [responses x errors] The effects (index x sigma, SI), by the published estimator. A pose at which the solve for an
+/// error does not converge is left out for this error.
 SensitivityResult::Indices effects_of(const Plan& plan, const Model& model) {
   const std::vector<double> no_background(model.description().factors.size(), 0.0);
   std::vector<double> responses(model.description().responses.size());

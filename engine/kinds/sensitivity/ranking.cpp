@@ -66,13 +66,14 @@ Cell rank_cell(const Ranking& ranking, std::size_t at) {
   return count_cell(1 + static_cast<std::uint64_t>(std::ranges::count_if(ranking.effects, larger)));
 }
 
-/// Extends the list `columns` by columns with the rank and the effect of each error. letter: the result, A or B. Refers
-/// to the ranking.
+/// Extends the list `columns` by columns with the rank and the effect of each error. letter: the result, A or B.
+/// by_metric: whether headings name the metric of the result instead of the letter. Refers to the ranking.
 void add_columns(std::vector<FilledColumn>& columns, char letter, const Ranking& ranking, bool by_metric) {
   const std::string suffix = letter == 'A' ? "_a" : "_b";
   const NamedUnit& response = ranking.response;
   const std::string in = fmt::format(" in {}", letter);
-  const int dispensable = letter == 'A' ? 2 : 1;  // the columns of B go first, because the rows are in the order of A
+  // Narrow tables omit the rank in A first, because the rows are in the order of A.
+  const int dispensable = letter == 'A' ? 2 : 1;
   columns.push_back({number_column("rank" + suffix, "rank" + (by_metric ? ", " + ranking.metric : in), "", dispensable),
                      [&ranking](std::size_t n) { return rank_cell(ranking, n); }});
   columns.push_back(
@@ -116,7 +117,7 @@ std::vector<std::string> remarks(const RankedResult& a, const RankedResult& b, d
   return list;
 }
 
-/// The errors that both results have, ordered as `order` asks for result A.
+/// The errors that both results have, in the order that `order` gives them in result A.
 Common errors_in_order(const RankedResult& a, const RankedResult& b, RowOrder order) {
   Common both = common(names_of(a.result.factors), names_of(b.result.factors));
   if (both.empty()) {
@@ -128,12 +129,12 @@ Common errors_in_order(const RankedResult& a, const RankedResult& b, RowOrder or
   return both;
 }
 
-/// The order in which narrow tables omit columns: higher numbers first. Columns of other responses are omitted first,
-/// beginning with the last response, then the rank.
+/// The order in which narrow tables omit columns: higher numbers first. The published index is omitted first, then the
+/// indices for other responses, beginning with the last response, then the rank.
 enum Dispensable : int { kIndexChange = 1, kNotConverged = 2, kRank = 3, kFirstOther = 4 };
 
-/// The responses that a summary shows (the headline) and that have a dimension, except the one by which errors are
-/// ranked.
+/// The headline's responses (those that a summary shows) whose unit is not "1", without the response by which errors
+/// are ranked.
 std::vector<std::size_t> other_responses(const StoredResult& result, std::size_t ranking) {
   std::vector<std::size_t> others;
   for (const std::size_t r : varying_first(result, result.headline)) {
@@ -203,8 +204,8 @@ std::vector<std::string> ranked_notes(const StoredResult& result, const RankedEr
   return notes;
 }
 
-/// A note on how the ranking changes with the points of the platform's metric; empty if the result does not contain
-/// this.
+/// A note on how much the ranking changes if the points of the platform's metric are moved. Empty if the result does
+/// not contain this.
 std::string radius_note(const StoredResult& result, std::size_t response) {
   const auto& tau = sensitivity_of(result).radius_tau;
   if (tau.empty() || std::isnan(tau(0, response)) || std::isnan(tau(1, response))) return {};
@@ -214,9 +215,9 @@ std::string radius_note(const StoredResult& result, std::size_t response) {
       result.responses[response].name, tau(0, response), tau(1, response));
 }
 
-/// A note on how often intervals from this few samples contain the true index; empty if there are enough samples. With
-/// few samples, intervals are too narrow if the responses are skewed, because few samples are in the tails. This is so
-/// for a norm, and for an error that acts by its square.
+/// A note on how often intervals from so few samples contain the true index; empty if there are enough samples. If the
+/// distribution of a response is skewed, as that of a norm or of the square of an error, few samples are in its tail,
+/// and intervals are too narrow.
 std::string few_samples_note(const StoredResult& result, std::size_t response) {
   constexpr std::uint64_t kEnoughOfNorms = 200;
   constexpr std::uint64_t kEnoughOfSquares = 1000;

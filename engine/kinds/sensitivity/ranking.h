@@ -17,7 +17,7 @@ namespace poesy {
 struct RankedErrors {
   std::size_t response;            ///< position of the response
   std::vector<std::size_t> rows;   ///< positions of the errors in the chosen order
-  std::vector<std::size_t> ranks;  ///< rank of each error by its effect, from 1
+  std::vector<std::size_t> ranks;  ///< [errors] rank of each error by its effect, from 1
 };
 
 /// Orders the errors of a result for a response. Precondition: the result has the response.
@@ -39,8 +39,8 @@ double relative_reach(const GlobalIndices& indices, std::size_t response, std::s
 /// The magnitude below which a global or local index of this response and error is rounding.
 double index_rounding(const StoredResult& result, std::size_t response, std::size_t factor);
 
-/// An index, or an end of its interval, SI, with rounding removed: 0 if the error has no effect, NaN if the index is
-/// too small to be distinguished from rounding.
+/// An index, or an end of its interval, SI, with rounding removed: 0 if the error has no effect, NaN if the error is
+/// too small to decide whether it has one.
 double without_rounding(const StoredResult& result, double index, std::size_t response, std::size_t factor);
 
 /// Whether the index that is shown is larger than rounding.
@@ -53,8 +53,8 @@ std::vector<std::size_t> responses_without_effect(const StoredResult& result);
 /// because some are per m and some per rad.
 double effect(const StoredResult& result, std::size_t response, std::size_t factor);
 
-/// A column with global indices per unit of the error, or with the ends of their intervals. values: the numbers of the
-/// column, SI. Keeps references to the result and the values.
+/// A column with global indices, or with ends of their intervals, in display units: response per unit of the error.
+/// values: the numbers of the column, SI. Keeps references to the result and the values.
 FilledColumn index_column(const StoredResult& result, const SensitivityResult::Indices& values, std::size_t response,
                           std::string name, std::string heading, int dispensable = 0);
 
@@ -63,12 +63,13 @@ FilledColumn rank_column(const StoredResult& result, const RankedErrors& ranked,
 
 /// Tables with the errors in the chosen order:
 /// - ranked: for each error, its effect on the response by which errors are ranked (global index x sigma), the index
-///   and its interval, the indices for the other responses that a summary shows, the share of samples that did not
-///   converge, and the published index where it differs from the shown one; in mm and deg;
+///   and its interval, the sigma of the error, the indices for the other responses that a summary shows, the change of
+///   the index at a tenth of the size, the share of samples that did not converge, and the published index; in mm and
+///   deg;
 /// - separation and fidelity, if the result has them.
 std::vector<Table> sensitivity_tables(const StoredResult& result, const TableOptions& options);
 
-/// The share of an error's samples that were not solved.
+/// The share of the samples of an error, at all poses, that were not solved.
 double share_not_converged(const SensitivityResult& result, std::size_t factor);
 
 /// Compares the rankings of two results for the errors that both have. Errors without an effect share the last rank.

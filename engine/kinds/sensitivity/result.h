@@ -24,7 +24,8 @@ struct ToleranceReference {
 /// The options of a sensitivity study.
 struct SensitivityOptions {
   std::optional<ToleranceReference> reference;  ///< reference error; none: the error with the smallest effect
-  /// An error counts as linear up to this measure of nonlinearity; only with two fidelities.
+  /// An error counts as linear if its nonlinearity and relative discrepancy (FidelityResult) are at most this number;
+  /// used only if a study compares two fidelities.
   double linearity = 0.01;
 };
 
@@ -32,7 +33,7 @@ struct SensitivityOptions {
 extern const StudyKind kSensitivityStudy;
 
 namespace axis {
-/// Multiples of the distance that the points of the platform's metric have from their middle.
+/// Multiples of the distance of each point of the platform's metric from the middle of all points.
 using RadiusMultiple = Axis<"radius_multiple">;
 }  // namespace axis
 
@@ -42,9 +43,9 @@ struct SeparationResult {
   /// A number for each error and pose.
   using Cells = Array<double, axis::Factor, axis::Pose>;
 
-  std::string measure;    ///< name of the length in which effects are measured
-  Cells drive;            ///< part of the effect that enters through the actuated directions
-  Cells constraint;       ///< part of the effect that enters through the constrained directions
+  std::string measure;    ///< description of the displacement by which effects are measured
+  Cells drive;            ///< part of the effect along the directions that the actuators drive
+  Cells constraint;       ///< part of the effect along the directions that the limbs constrain
   Cells effect;           ///< effect of both parts together
   Cells residual;         ///< effect that remains after the best correction by the actuators
   Cells removable_local;  ///< 1 - residual / effect
@@ -63,10 +64,10 @@ struct FidelityResult {
   /// A number for each response and error.
   using Indices = Array<double, axis::Response, axis::Factor>;
 
-  std::vector<std::string> fidelities;  ///< names of the two fidelities, the first one first
-  double linearity = 0.01;  ///< an error counts as linear up to this magnitude of relative discrepancy and nonlinearity
-  Indices global;           ///< SensitivityResult::global at the second fidelity
-  Indices discrepancy;      ///< global at the second fidelity minus global at the first
+  std::vector<std::string> fidelities;       ///< names of the two fidelities, the first one first
+  double linearity = 0.01;                   ///< largest nonlinearity and |relative_discrepancy| of a linear error
+  Indices global;                            ///< SensitivityResult::global at the second fidelity
+  Indices discrepancy;                       ///< global at the second fidelity minus global at the first
   Indices relative_discrepancy;              ///< discrepancy divided by the error's effect
   Indices nonlinearity;                      ///< root mean square change of mean and spread between the fidelities,
                                              ///< divided by the error's effect
@@ -112,7 +113,8 @@ struct SensitivityResult {
   Array<std::uint64_t, axis::Factor> limb;               ///< limb of each error, counted from 1
   /// The error relative to which tolerances of equal effect are set; none if no error has an effect.
   Array<std::optional<ReferenceError>, axis::Response> reference;
-  Array<double, axis::Response> mean_square_bound;  ///< Response::mean_square_bound
+  Array<double, axis::Response> mean_square_bound;  ///< upper bound on the mean square of all errors together, divided
+                                                    ///< by the sum of the mean squares of each error alone
   std::optional<SeparationResult> separation;       ///< set if the model separates its errors
   std::optional<FidelityResult> fidelity;           ///< set if the study compares two fidelities
   /// The global indices and their intervals with fewer samples, for a study with a fixed number of samples. Each entry
@@ -128,7 +130,7 @@ struct SensitivityResult {
   std::size_t responses() const { return global.length<axis::Response>(); }  ///< The number of responses.
   std::size_t factors() const { return global.length<axis::Factor>(); }      ///< The number of errors that vary.
   std::size_t poses() const { return local.length<axis::Pose>(); }           ///< The number of poses.
-  /// How the solves of all cells ended.
+  /// How the solves of all errors at all poses ended.
   SolveCounts total() const { return total_of(solves.all()); }
 };
 

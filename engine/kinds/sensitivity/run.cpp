@@ -67,7 +67,7 @@ bool has_series(const Study& study, std::size_t fidelity) {
   return study.solver.series && fidelity == 0 && study.model().metric != "published";
 }
 
-/// The model, with series in place of solves if has_series().
+/// The model, or a model that replaces solves by series if has_series().
 std::shared_ptr<const Model> by_series(const Study& study, std::shared_ptr<const Model> model, std::size_t fidelity) {
   return has_series(study, fidelity) ? with_series(std::move(model)) : std::move(model);
 }
@@ -78,14 +78,14 @@ std::vector<Dimension> response_dimensions(const ModelDescription& model) {
   return dimensions;
 }
 
-/// Runs the study at both of its fidelities, on the same draws.
+/// Runs the study at both fidelities, with the same draws, and compares the results.
 std::optional<SensitivityResult> run_both_fidelities(const StudyRun& run, const Plan& plan) {
   const Analysis& analysis = run.study.analysis;
   const auto report = [&](const Progress& progress) {
     if (run.options.progress) run.options.progress(progress);
   };
-  // The progress of both fidelities is reported as that of one run. If the first fidelity reports none, the checkpoint
-  // contained all of it.
+  // The progress of both fidelities is reported as that of one run. If the first fidelity reports no progress, the
+  // checkpoint already contained all its samples.
   std::optional<std::uint64_t> before;
   RunOptions options = run.options;
   options.progress = [&](const Progress& half) {
@@ -138,7 +138,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
 
 std::size_t cells(const Study& study, std::size_t poses) { return study.analysis.factors.size() * poses; }
 
-/// The expected work of separating the errors of a study (SeparationResult), measured at one of its poses.
+/// The expected work of separating the effects of errors (SeparationResult). Each piece of it is one of the poses.
 WorkOutlook separating(const Study& study, const Model& model, const PoseSet& poses) {
   return {[&](double at) {
     const auto pose = poses[PoseIndex(static_cast<std::size_t>(at * static_cast<double>(poses.size())))];
@@ -148,7 +148,8 @@ WorkOutlook separating(const Study& study, const Model& model, const PoseSet& po
   }};
 }
 
-/// The memory of a study. The result takes the place of the accumulators, which are freed one response at a time.
+/// The memory of a study. While the result is computed, the accumulators are freed one response at a time, so that the
+/// result takes their place.
 MemoryOutlook sensitivity_memory(const Study& study, const Plan& plan, std::size_t fidelities) {
   const std::size_t responses = study.model().responses.size();
   const AxisLengths lengths{{"response", responses}, {"factor", plan.factors().size()}, {"pose", plan.poses().size()}};

@@ -12,9 +12,9 @@
 
 namespace poesy {
 
-/// Separates the effects of these errors at all poses (SeparationResult). sigma: [errors] standard deviations, SI. The
-/// shares of an error are NaN if its effect is rounding. Its shares over the poses are NaN if its effect is not finite
-/// at some pose. Precondition: the model separates its errors and reaches the poses.
+/// Separates the effects of errors at all poses (SeparationResult). sigma: [errors] standard deviations of these
+/// errors, SI. The shares of an error are NaN if its effect is rounding. The shares over all poses are NaN if its
+/// effect is not finite at some pose. Precondition: the model separates its errors and reaches the poses.
 SeparationResult separate_errors(const Model& model, const PoseSet& poses, std::span<const FactorIndex> factors,
                                  std::span<const double> sigma);
 
@@ -23,9 +23,9 @@ SeparationResult separate_errors(const Model& model, const PoseSet& poses, std::
 void write_separation(ResultBuilder& result, const std::optional<SeparationResult>& found);
 std::optional<SeparationResult> read_separation(const h5::File& file);
 /// @}
-/// Bytes of the datasets of /separation. The same in memory and in a file.
+/// The size in bytes of the datasets of /separation, which is the same in memory and in a file.
 std::size_t separation_bytes(const AxisLengths& lengths);
-/// Adds to `tables` separation.csv and its tables by pose.
+/// Adds to `tables` separation.csv and the tables that show the separation at each pose.
 void append_separation_tables(CsvTables& tables, const StoredResult& result);
 
 /// The table of the part of each error's effect that calibration can remove, in the order of `ranked`. Precondition:

@@ -52,8 +52,8 @@ std::vector<double> quarters_of_parts(const Study& study) {
   return largest;
 }
 
-/// Sets the tolerances of a study. A tolerance above the largest one is cut to it, and its error is added to
-/// `at_largest`.
+/// Sets the errors of a study to normal errors with these tolerances [errors] as standard deviations, SI. A tolerance
+/// above `largest` is cut to it, and a text on its error is added to `at_largest`.
 void set_tolerances(Study& study, std::span<const double> largest, std::span<const double> tolerances,
                     std::vector<std::string>& at_largest) {
   for (std::size_t p = 0; p < tolerances.size(); ++p) {
@@ -75,8 +75,8 @@ std::size_t position(const std::vector<NamedUnit>& things, const std::string& na
                    suggestion(name, names(things)));
 }
 
-/// The positive quantity (SI) that a command-line option states. owner: the response or error to which the quantity
-/// belongs; its unit has the same dimension.
+/// The positive quantity (SI) that a command-line option states. owner: the response or error whose dimension the
+/// quantity must have. Throws InputError if the text does not state a positive quantity of this dimension.
 double positive(const std::string& text, std::string_view option, const NamedUnit& owner) {
   const Dimension dimension = dimension_of(owner.unit);
   const std::string example = fmt::format("{} is measured in {}", owner.name, display_unit(dimension).name);
@@ -184,8 +184,8 @@ double checked_limit(const TolerancesOptions& options, const StoredResult& resul
       "raise the limit, or study smaller errors in [analysis] background");
 }
 
-/// Sets tolerances within a limit. Negligible errors get the studied size, and the other errors share the rest of the
-/// limit.
+/// Sets the tolerances with which the limit (SI) is kept. Negligible errors get the studied size, and the other errors
+/// share the rest of the limit.
 void set_limit(ResponseTolerances& found, double limit, const StoredResult& result, const ResponseStudy& study,
                const Catalog& catalog) {
   const MeanSquare& response = found.all.mean_square;
@@ -210,7 +210,8 @@ void set_negligible(ResponseTolerances& found, const StoredResult& result) {
   for (const std::size_t p : found.negligible) found.all.equal_effect[p] = result.factor_sigma[p];
 }
 
-/// Lines with the commands that run the studies, and with the errors whose tolerance was cut to the largest one.
+/// Lines with the commands that run the written studies, and with the errors whose tolerance was cut to the largest
+/// one.
 std::string commands_of(const Confirmation& written) {
   std::string commands;
   for (const std::string& study : written.paths) {
@@ -239,8 +240,8 @@ std::string write_files(const TolerancesOptions& options, const StoredResult& re
   return table + "\n" + commands;
 }
 
-/// A note on the errors of the mechanism that the study neither varies nor holds constant in its background. None if
-/// this program does not have the mechanism or cannot read the stored study.
+/// A note on the number of errors of the mechanism that the study neither varies nor holds constant in its background.
+/// None if there are no such errors, or if this program does not have the mechanism or cannot read the stored study.
 std::optional<std::string> perfect_errors_note(const StoredResult& result, const Catalog& catalog) {
   const std::optional<Study> study = study_in(result, catalog);
   if (!study) return std::nullopt;
@@ -266,7 +267,8 @@ void refuse_calibrated(const TolerancesOptions& options, const StoredResult& res
                    "leave out --limit, or take a study of kind \"allocation\" with the same [analysis.calibration]");
 }
 
-/// Refuses tolerances at whose size the errors' indices do not hold, or returns the reason why they may not hold.
+/// The reason why the tolerances may not hold: the indices of some errors change with size. Empty if there is none.
+/// Throws InputError instead of returning a reason, unless the user allows extrapolation.
 std::string caveat_of(const TolerancesOptions& options, const StoredResult& result, const ResponseTolerances& found) {
   const std::string caveat = wrong_sizes_text(result, found);
   if (caveat.empty() || options.extrapolate) return caveat;

@@ -57,8 +57,8 @@ const Fields<SensitivityResult> kIndexFields{
     {"index_ci_high", &SensitivityResult::global_ci_high, kIndexUnit, "Upper end of the interval of index",
      Presence::always, kIndexLevel}};
 
-/// The fields of numbers that follow from the study. Of the group /tolerances, only these fields and the reference
-/// errors are read.
+/// The fields of numbers that follow from the study. Only these fields and the reference errors are read from the group
+/// /tolerances.
 const Fields<SensitivityResult> kStudyFields{
     {"limb", &SensitivityResult::limb, "1", "Limb of the error, from 1"},
     {"mean_square_bound", &SensitivityResult::mean_square_bound, "1",
@@ -158,8 +158,8 @@ void add_limit_notes(std::vector<std::string>& notes, const StoredResult& result
       "allocation");
 }
 
-/// Adds a note on how far the limit could be exceeded even if every effect is linear. For a response that combines
-/// several norms, mean squares do not add exactly.
+/// Adds a note on how far the limit may be exceeded even if every effect is linear, if the response combines several
+/// norms, because their mean squares do not add exactly.
 void add_bound_note(std::vector<std::string>& notes, const StoredResult& result, const ResponseTolerances& tolerances) {
   if (!tolerances.limit) return;
   const double bound = std::sqrt(sensitivity_of(result).mean_square_bound(tolerances.response));
@@ -173,8 +173,7 @@ void add_bound_note(std::vector<std::string>& notes, const StoredResult& result,
                   response_text(response, tolerances.limit->limit / bound)));
 }
 
-/// If some errors of the study are not normal, adds a note that a tolerance is the standard deviation of a normal
-/// error.
+/// Adds a note if the study states means of errors, and notes if some of its errors are not normal.
 void add_distribution_note(std::vector<std::string>& notes, const StoredResult& result) {
   std::vector<std::string> shapes;
   std::size_t count = 0;
@@ -200,8 +199,8 @@ void add_distribution_note(std::vector<std::string>& notes, const StoredResult& 
       "here, and means of several errors do not add as scatter does. Confirm by a Monte Carlo study");
 }
 
-/// Adds a note on how many errors get a tolerance that is larger than their size in the study, by at least one way to
-/// share the limit among the errors.
+/// Adds a note on how many errors get a proposed tolerance (proposed_tolerances()) that is larger than their size in
+/// the study.
 void add_extrapolation_note(std::vector<std::string>& notes, const StoredResult& result,
                             const ResponseTolerances& tolerances) {
   const std::vector<std::span<const double>> lists = proposed_tolerances(tolerances);

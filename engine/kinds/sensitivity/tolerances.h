@@ -17,7 +17,7 @@
 
 namespace poesy {
 
-/// Tolerances of the errors for one response of a sensitivity result, and if there is a limit on the response,
+/// Tolerances of the errors for one response of a sensitivity result. If there is a limit on the response, also the
 /// tolerances with which it is kept.
 struct ResponseTolerances {
   std::size_t response;                  ///< position of the response
@@ -39,13 +39,13 @@ void write_tolerance_group(ResultBuilder& result, const Study& study, const Sens
 /// Reads the group /tolerances. Throws h5::Error if a reference is not one of these factors.
 void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& factors, SensitivityResult& found);
 /// @}
-/// Adds tolerances_RESPONSE.csv.
+/// Adds to `tables` a table tolerances_RESPONSE.csv for each response.
 void append_tolerance_tables(CsvTables& tables, const StoredResult& result);
 /// Adds to the page the section on tolerances.
 void add_tolerance_section(const StoredResult& result, Page& page);
 
-/// The lists of tolerances that are proposed. With a limit, one list for each way to share it; without, the tolerances
-/// of equal effect. Keeps a reference to the tolerances.
+/// The lists of tolerances [errors] that are proposed: with a limit, those of LimitTolerances::equal_effect and
+/// ::equal_tolerance; without a limit, Tolerances::equal_effect. The lists refer to the argument.
 std::vector<std::span<const double>> proposed_tolerances(const ResponseTolerances& tolerances);
 
 /// The largest sensible tolerance for each error of a sensitivity result, SI: a quarter of the dimension of the
@@ -53,7 +53,7 @@ std::vector<std::span<const double>> proposed_tolerances(const ResponseTolerance
 /// this catalog.
 std::vector<double> largest_tolerances(const StoredResult& result, const Catalog& catalog);
 
-/// The tolerances for one response, relative to the reference in the result.
+/// The tolerances for one response, without a limit, relative to the reference error in the result.
 ResponseTolerances stored_tolerances(const StoredResult& result, std::size_t response);
 
 /// Writes tolerances.csv for programs that assign tolerances. The folder is made if missing. Columns:
@@ -90,8 +90,8 @@ struct Confirmation {
 Confirmation write_confirmation(const std::string& folder, const StoredResult& result,
                                 const ResponseTolerances& tolerances, const Catalog& catalog);
 
-/// The table of every error's tolerances for one response, in mm and deg. Notes state the reference, the limit, and the
-/// predicted root mean square with the tolerances of equal effect.
+/// The table of the tolerances of every error for one response, in mm and deg. Notes state the limit; or without a
+/// limit the reference, and the predicted root mean square with the tolerances of equal effect.
 Table tolerance_table(const StoredResult& result, const ResponseTolerances& tolerances);
 
 /// Sets tolerances from the indices of a sensitivity result; see SetTolerances.

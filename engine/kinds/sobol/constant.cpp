@@ -19,7 +19,7 @@ std::vector<Dimension> detail_dimensions(const ModelDescription& model) {
   return list;
 }
 
-/// [poses] The standard deviation of a row of the panel (axis::PanelRow) at each pose.
+/// [poses] The standard deviation, SI, of a row of the panel (axis::PanelRow) at each pose.
 std::vector<double> deviations(const PanelSums& sums, std::size_t row) {
   std::vector<double> list;
   for (const Moments& moments : sums.moments.row(row)) list.push_back(moments.standard_deviation());

@@ -35,8 +35,8 @@ PanelUnit PanelDesign::unit(std::size_t n) const {
 }
 
 void PanelDesign::fill(PanelSample which, std::size_t slot, const PanelUnit& unit, std::span<double> uniforms) const {
-  // An error has two adjacent dimensions of the points, for its values in the samples A and B. The errors come in their
-  // order, because the first dimensions of Sobol' points are distributed best.
+  // An error has two adjacent dimensions of the points, for its values in the samples A and B. Errors that come first
+  // in the study get the first dimensions, in which Sobol' points are distributed best.
   const std::size_t dimension = 2 * slot + (which == PanelSample::A ? 0 : 1);
   const DesignColumn column{dimension, unit.replicate};
   const SampleIndex first(unit.first);

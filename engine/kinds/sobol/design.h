@@ -13,18 +13,18 @@
 namespace poesy {
 
 /// A unit of work: consecutive samples of a panel (IndexPanel), which are solved at all poses. A sample of a panel
-/// consists of a draw A, a draw B, and mixtures of the two.
+/// consists of a set of errors A, another set B, and mixtures of the two.
 struct PanelUnit {
   std::size_t replicate;  ///< number of the replicate of the design that has the samples; 0 for random draws
   std::size_t first;      ///< position of the first sample within the replicate
-  std::size_t count;      ///< number of samples, B
+  std::size_t count;      ///< number of samples
   std::size_t number;     ///< position of the first sample among all samples of the study
 };
 
 /// The two independent samples that a panel (IndexPanel) mixes.
 enum class PanelSample { A, B };
 
-/// The points of a design; none for random draws.
+/// The points of a design; std::monostate for random draws.
 using PanelPoints = std::variant<std::monostate, LatinHypercube, ScrambledSobol>;
 
 /// The points of a study of Sobol' indices in the space of the errors, divided into units of work. They are the same
@@ -37,7 +37,7 @@ class PanelDesign {
   /// Keeps a reference to the plan.
   PanelDesign(const Plan& plan, const SobolOptions& asked);
 
-  /// Whether all samples are independent. Otherwise only samples of different replicates are.
+  /// Whether all samples are independent. If not, only samples of different replicates are.
   bool independent() const { return std::holds_alternative<std::monostate>(points_); }
   std::size_t replicates() const { return replicates_; }  ///< The number of replicates; 1 for random draws.
   std::size_t units_per_replicate() const;                ///< The number of units in each replicate.
@@ -48,9 +48,9 @@ class PanelDesign {
   /// The number of units that contain the first `samples` samples of the study. Precondition: samples are independent.
   std::size_t units_for(std::size_t samples) const { return (samples + kUnitSamples - 1) / kUnitSamples; }
 
-  /// [samples] The uniform numbers from which one error in the unit's samples is computed. slot: position among the
-  /// plan's factors. With random draws, sample A equals the sample of a Monte Carlo study with draws per machine and
-  /// the same seed.
+  /// Sets `uniforms` [samples] to the uniform numbers from which one error of the unit's samples is computed. slot:
+  /// position of the error in Plan::factors(). With random draws, sample A equals the sample of a Monte Carlo study
+  /// with draws per machine and the same seed.
   void fill(PanelSample which, std::size_t slot, const PanelUnit& unit, std::span<double> uniforms) const;
 
  private:

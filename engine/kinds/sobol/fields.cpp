@@ -11,7 +11,7 @@
 namespace poesy {
 namespace {
 
-/// The name of the axis of indices in a file: errors, or the groups into which the study joins them.
+/// The name of the axis of indices in a file: that of errors, or that of the groups into which the study joins errors.
 std::string axis_of(bool joined) { return joined ? "group" : "factor"; }
 
 /// The fields, with their axis "group" renamed by axis_of().
@@ -182,7 +182,7 @@ void read(const h5::File& file, StoredResult& result) {
   result.constant = constant_responses(found.varies);
   found.solves = read_solver(file, kByPose);
   result.convergence = read_convergence(file, kConvergence);
-  // A sample of another design cannot be drawn again by its pose and number, so it cannot be replayed.
+  // Samples of designs that are not random cannot be drawn again by pose and number, so they cannot be replayed.
   if (study_setting(result.study_text, "analysis", "design") == "\"random\"")
     result.varied = {std::string(kAllFactors)};
   result.failures = read_failures(file, result);

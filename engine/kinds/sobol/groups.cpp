@@ -17,7 +17,8 @@ const Factor& factor_at(const Analysis& analysis, const ModelDescription& model,
   return model.factors[analysis.factors[position].value];
 }
 
-/// Joins errors into groups: those for which text(position) is equal, in the order in which the texts first appear.
+/// Joins errors with equal text(position) into a group, which has this text as its name. Groups have the order in which
+/// their texts first appear.
 std::vector<ErrorGroup> joined_by(const Analysis& analysis, const std::function<std::string(std::size_t)>& text) {
   std::vector<ErrorGroup> groups;
   for (std::size_t p = 0; p < analysis.factors.size(); ++p) {
@@ -55,7 +56,7 @@ std::optional<std::size_t> find_response(const ModelDescription& model, const st
   return static_cast<std::size_t>(found - model.responses.begin());
 }
 
-/// The vector whose x component is this response; none if the responses form no such vector.
+/// The vector whose x component is the response `x`; none if the model has no such vector.
 std::optional<SignedVector> vector_of(const ModelDescription& model, std::size_t x) {
   const std::string& name = model.responses[x].name;
   if (name != "x" && !name.ends_with("_x")) return std::nullopt;

@@ -16,8 +16,8 @@ namespace poesy {
 
 /// Errors that vary together: a mixture of two samples takes either all of them or none of them from the second sample.
 struct ErrorGroup {
-  std::string name;                  ///< name of the group; a single error has its own name
-  std::vector<std::size_t> members;  ///< positions among the study's errors, ascending
+  std::string name;                  ///< name of the group; a group of a single error has the name of the error
+  std::vector<std::size_t> members;  ///< positions of the errors among those that the study varies, ascending
 };
 
 /// The name of the group of errors that no named group contains.
@@ -30,14 +30,14 @@ std::vector<ErrorGroup> error_groups(const Analysis& analysis, const ModelDescri
 /// For each group, 1 if one of its errors is correlated with an error of another group, otherwise 0.
 std::vector<std::uint8_t> split_groups(std::span<const ErrorGroup> groups, const Study& study);
 
-/// Positions of two groups.
+/// The indices of two groups.
 using GroupPair = std::pair<std::size_t, std::size_t>;
 
 /// All pairs of groups, with the smaller position first.
 std::vector<GroupPair> group_pairs(std::size_t groups);
 
-/// A vector whose components have a sign and the same unit, so that its mean square does not depend on the coordinate
-/// axes.
+/// A vector whose components have a sign and the same unit. Its mean square does not depend on the directions of the
+/// coordinate axes.
 struct SignedVector {
   std::string name;                     ///< name of the vector: "position", "delta_mu_21_v"
   std::vector<std::size_t> components;  ///< positions of the components: r for response r; R + d for component d of the

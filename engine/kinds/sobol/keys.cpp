@@ -181,8 +181,8 @@ std::string names_of(const std::vector<FactorIndex>& factors, const Study& study
   return printable(text, 120);
 }
 
-/// Throws InputError if errors of different groups are correlated and S1 and ST are wanted, which need independent
-/// groups.
+/// Throws InputError if there are too many groups for Shapley effects, or if errors of different groups are correlated.
+/// Such a correlation is allowed if the study asks for Shapley effects and for no second-order indices.
 void check_correlation(const Study& study, const StudySection& analysis) {
   const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
   const std::vector<ErrorGroup> groups = error_groups(study.analysis, study.model());
@@ -233,8 +233,8 @@ void check_zone_groups(const Study& study, const StudySection& analysis) {
   }
 }
 
-/// Throws InputError if a machine draws an error anew at each pose. A mixture of two samples takes each error from one
-/// of them at all poses.
+/// Throws InputError if a machine draws an error anew at each pose, because a mixture of two samples takes an error
+/// from the same sample at all poses.
 void check_draws(const Study& study, const StudySection& analysis) {
   for (const FactorIndex factor : study.analysis.factors) {
     if (!study.errors.is_per_pose(factor)) continue;
@@ -268,8 +268,8 @@ void check_sobol(Study& study, const Reading& reading) {
                    "name more factors, or other groups");
 }
 
-/// The number of solves for a sample of the panel at each pose: one each for the two independent samples A and B, one
-/// for each group or subset of groups, and one for each pair of groups if second-order indices are wanted.
+/// The number of solves for a sample of the panel at each pose: one for each of the sets of errors A and B and one for
+/// each group; with Shapley effects, one for each subset of groups instead. Second-order indices add one for each pair.
 double solves_of_sample(const Study& study) {
   const auto groups = static_cast<double>(error_groups(study.analysis, study.model()).size());
   const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);

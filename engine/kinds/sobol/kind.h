@@ -5,8 +5,7 @@
 
 namespace poesy {
 
-/// Runs and reports studies of Sobol' indices, which divide the variance of each response among the errors and their
-/// interactions.
+/// The kind of study `sobol`, which divides the variance of each response among the errors and their interactions.
 extern const Kind kSobolKind;
 
 /// How results of Sobol' indices are stored and reported.

@@ -338,7 +338,7 @@ void PanelEvaluator::add_shapley(PoseIndex pose) {
     for (std::size_t g = 0; g < groups; ++g) {
       if ((subset >> g & 1U) == 0) others.push_back(g);
     }
-    if (others.size() == 1) continue;  // this mixture was already solved for the indices of the group
+    if (others.size() == 1) continue;  // add_group() already solved this mixture
     mix(others);
     solve(pose, mixed_, of_mixed_);
     absorb();

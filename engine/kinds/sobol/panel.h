@@ -21,8 +21,8 @@
 namespace poesy {
 
 namespace axis {
-using PanelQuantity = Axis<"quantity">;  ///< Quantities with indices: first the responses, then vectors of components
-                                         ///< with a sign (SignedVector).
+/// Quantities that get Sobol' indices: first the responses, then vectors of components with a sign (SignedVector).
+using PanelQuantity = Axis<"quantity">;
 using PanelRow = Axis<"row">;  ///< Numbers that a solve gives: first the responses, then the components of the model's
                                ///< additional outputs (Detail in model/model.h).
 using GroupPair = Axis<"pair">;          ///< Pairs of groups.
@@ -30,11 +30,10 @@ using GroupSubset = Axis<"subset">;      ///< Subsets of the groups, as numbers 
 using BlockError = Axis<"block_error">;  ///< Errors of a block of correlated errors.
 }  // namespace axis
 
-/// What a study of Sobol' indices computes: its groups, quantities and poses. A panel is a set of samples: two
-/// independent samples A and B of all errors, and mixtures, which have the errors of some groups from B and all others
-/// from A.
+/// What a study of Sobol' indices computes: its groups, quantities and poses. A panel consists of two independent
+/// samples A and B of all errors, and of mixtures, which take the errors of some groups from B and all others from A.
 struct IndexPanel {
-  /// Describes the panel of samples of this study. Precondition: the study is of Sobol' indices.
+  /// Describes the panel of this study. Precondition: the study is of kind `sobol`.
   IndexPanel(const Study& study, std::size_t pose_count);
 
   std::vector<ErrorGroup> groups;  ///< groups of errors
@@ -43,8 +42,9 @@ struct IndexPanel {
   std::size_t samples;           ///< number of samples in the study
   std::vector<GroupPair> pairs;  ///< pairs of groups, see group_pairs(); empty without second-order indices
   std::size_t responses;         ///< number of responses
-  std::size_t details;           ///< number of components of the model's additional outputs; 0 if no vector needs them
-  std::size_t poses;             ///< number of poses
+  /// Number of components of the model's additional outputs (Detail in model/model.h); 0 if no vector needs them.
+  std::size_t details;
+  std::size_t poses;  ///< number of poses
   /// [groups] 1 if an error of the group is correlated with an error of another group, otherwise 0. A group with 1 gets
   /// neither S1 nor ST.
   std::vector<std::uint8_t> split;
@@ -54,7 +54,7 @@ struct IndexPanel {
   std::size_t rows() const { return responses + details; }               ///< The length of axis::PanelRow.
   /// The rows that are the components of a quantity.
   std::span<const std::size_t> components(std::size_t quantity) const;
-  /// The number of solves of one sample at each pose.
+  /// The number of solves of one sample at each pose: A, B, and the mixtures.
   std::size_t solves_of_sample() const { return (shapley ? subsets() : 2 + groups.size()) + pairs.size(); }
   /// The length of axis::GroupSubset. Precondition: shapley.
   std::size_t subsets() const { return std::size_t{1} << groups.size(); }
@@ -63,7 +63,7 @@ struct IndexPanel {
   std::vector<std::vector<std::size_t>> components_;  ///< [quantities] rows of each quantity's components
 };
 
-/// Sums from which the two indices of one group are computed.
+/// Sums from which the two indices (total and first-order) of one group are computed.
 struct IndexSums {
   RatioSums total;  ///< sums for the total index ST
   RatioSums first;  ///< sums for the first-order index S1
@@ -80,19 +80,20 @@ struct PanelSums {
   Array<IndexSums, axis::Response, axis::ErrorGroup, axis::Pose> at_poses;  ///< sums for the indices at each pose
   Array<IndexSums, axis::PanelQuantity, axis::ErrorGroup> aggregated;  ///< sums for the indices over all poses together
   Array<RatioSums, axis::Response, axis::GroupPair> pairs;             ///< sums for second-order indices over all poses
-  Array<RatioSums, axis::Response, axis::ErrorGroup> shapley;  ///< sums for Shapley effects; empty if not wanted
-  Array<Moments, axis::PanelRow, axis::Pose> moments;          ///< moments over the two independent samples A and B
+  /// Sums for Shapley effects over all poses; empty if not wanted.
+  Array<RatioSums, axis::Response, axis::ErrorGroup> shapley;
+  Array<Moments, axis::PanelRow, axis::Pose> moments;  ///< moments over the samples A and B together, SI
   Array<double, axis::Response> least;  ///< smallest response in the two samples A and B; infinity without samples
   std::vector<SolveCounts> solves;      ///< [poses] how the solves at each pose ended
   std::vector<FailedSamples> failed;    ///< [poses] first samples of A that were not solved
   std::vector<std::uint64_t> failures;  ///< [poses] number of samples of A that were not solved
-  std::uint64_t end = 0;                ///< the numbers of all samples are below this
+  std::uint64_t end = 0;                ///< the number of every sample is below this
 
   /// Adds later samples of the same panel. Precondition: the samples of `later` come after those of this object.
   void merge(const PanelSums& later);
-  /// The sums of a single sample whose values are the means over all samples of these sums; moments and counts stay as
-  /// they are. Used for a replicate of a design, whose samples depend on each other, so that only their mean counts as
-  /// an independent sample.
+  /// These sums as those of a single sample, whose values are the means over all samples; moments and counts are
+  /// copied. This is for a replicate of a design: its samples depend on each other, so only their mean is an
+  /// independent sample.
   PanelSums as_one() const;
 
   void state(Archive& archive);  ///< Reads or writes the sums, bit for bit.
@@ -106,15 +107,15 @@ struct SplitBlock {
 };
 
 /// The draws of a block of correlated errors that belong to several groups, for Shapley effects. A mixture takes the
-/// errors of some groups from A and draws the others; bit g of the mixture's number is set if group g is drawn. The
-/// mixture determines which errors of the block are drawn conditional on which others.
+/// errors of some groups from A, and draws the others conditional on them. Bit g of the number of a mixture is set if
+/// group g is drawn.
 struct SplitDraws {
   /// The errors of a block in one mixture.
   struct Mixture {
-    std::vector<std::size_t> shared;          ///< errors taken from sample A, as positions in the block
-    std::vector<std::size_t> drawn;           ///< other errors, drawn from sample B, as positions in the block
-    std::optional<ConditionalScores> scores;  ///< distribution of the drawn errors given the shared ones; empty if all
-                                              ///< or no errors are shared
+    std::vector<std::size_t> shared;  ///< positions in the block of the errors that are taken from sample A
+    std::vector<std::size_t> drawn;   ///< positions in the block of the other errors, which are drawn
+    /// Distribution of the normal scores of `drawn` given those of `shared`; none if either list is empty.
+    std::optional<ConditionalScores> scores;
   };
 
   SplitDraws(SplitBlock split, std::size_t subsets);  ///< Prepares the mixtures of all subsets of groups. subsets:
@@ -129,28 +130,28 @@ struct SplitDraws {
 
 /// Solves the samples A and B of a panel (IndexPanel), and mixtures of the two: A with the errors of one group, or of a
 /// pair of groups, from B. For Shapley effects, it also solves A with every other subset of groups from B. A mixture
-/// has the same errors at all poses. If errors from B are correlated with errors from A, they are drawn conditional on
-/// these, from the normals of B. The result of a unit depends only on the study and the unit. Owns the scratch memory
-/// of one thread.
+/// has the same errors at all poses. Errors from B that are correlated with errors from A are drawn conditional on the
+/// latter, with the normal numbers of B. The result of a unit depends only on the study and the unit. Owns the scratch
+/// memory of one thread.
 class PanelEvaluator {
  public:
   /// Keeps references to all arguments.
   PanelEvaluator(const Plan& plan, const Model& model, const IndexPanel& panel, const PanelDesign& design);
 
   PanelSums operator()(const PanelUnit& unit);  ///< Solves a unit at all poses.
-  /// Solves a unit at one pose to measure the time. Returns the number of solves.
+  /// Solves a unit at one pose, so that a caller can measure the time. Returns the number of solves.
   std::uint64_t try_pose(const PanelUnit& unit, PoseIndex pose);
 
  private:
   /// Numbers along some axes and for each sample of the unit.
   template <NamedAxis... Axes>
   using OfSamples = Array<double, Axes..., axis::Sample>;
-  /// [samples] 1 or 0: a property of each sample.
+  /// [samples] 1 or 0: whether each sample has some property.
   using Flags = std::vector<std::uint8_t>;
   /// The responses and additional outputs of samples at a pose.
   struct Outcomes {
     OfSamples<axis::PanelRow> values;
-    Flags counts;  ///< whether each sample counts
+    Flags counts;  ///< whether the solve of each sample counts, see counts()
   };
   /// Numbers from which the indices of each group are computed, for each quantity and sample. A and B are the two
   /// independent samples; the mixture C is A with the errors of the group from B.
@@ -159,7 +160,8 @@ class PanelEvaluator {
     /// Squared difference of A and B minus that of B and C. Its mean is twice the covariance of B and C; this
     /// covariance is the variance that the group causes alone.
     OfSamples<axis::PanelQuantity, axis::ErrorGroup> first;
-    /// Squared difference of A and B. In `over_poses_`, a pose at which A, B or C does not count adds 0.
+    /// Squared difference of A and B. It is set only in `over_poses_`, to which a pose adds 0 if A, B or C does not
+    /// count.
     OfSamples<axis::PanelQuantity, axis::ErrorGroup> between;
   };
 
@@ -192,7 +194,7 @@ class PanelEvaluator {
   const IndexPanel* panel_;
   const PanelDesign* design_;
   std::unique_ptr<Evaluator> evaluator_;
-  std::vector<double> rounding_;  ///< [responses] rounding of each response, see Model::rounding
+  std::vector<double> rounding_;  ///< [responses] rounding of each response, SI, see Model::rounding
   PanelUnit unit_{};
   OfSamples<axis::Factor> a_;
   OfSamples<axis::Factor> b_;
@@ -200,19 +202,19 @@ class PanelEvaluator {
   Outcomes of_a_;
   Outcomes of_b_;
   Outcomes of_mixed_;
-  /// Squared difference of the outcomes of samples A and B at the present pose.
+  /// Squared difference of the outcomes of A and B at the present pose.
   OfSamples<axis::PanelQuantity> between_;
   GroupRows at_pose_;     ///< numbers at the present pose
   GroupRows over_poses_;  ///< numbers summed over the poses
-  /// For each pair of groups: GroupRows::first with both groups exchanged together, minus the same with each of them
-  /// exchanged alone, summed over the poses.
+  /// For each pair of groups: GroupRows::first of both groups as one, minus GroupRows::first of each group alone,
+  /// summed over the poses.
   OfSamples<axis::Response, axis::GroupPair> pair_first_;
   /// Squared difference of A and B, summed over the poses that count for this pair of groups.
   OfSamples<axis::Response, axis::GroupPair> pair_between_;
   /// Blocks of correlated errors that belong to several groups, for Shapley effects.
   std::vector<SplitDraws> split_;
-  /// Squared difference, at the present pose, of A and the mixture that has the errors of this subset of groups in
-  /// common with A.
+  /// Squared difference, at the present pose, of A and the mixture that takes this subset of groups from A and all
+  /// others from B.
   OfSamples<axis::GroupSubset, axis::Response> differences_;
   Flags all_count_;  ///< whether all mixtures of each sample count at the present pose
   /// Shapley effects times variance, summed over the poses.

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kMostPairs = 10;  ///< largest number of pairs in a table
 
-/// The word for what has indices in a result: "error", or "group" if errors are joined.
+/// The word for one of those that have indices in a result: "group" if errors are joined, otherwise "error".
 std::string word(const SobolResult& found) { return found.joined ? "group" : "error"; }
 
 double or_least(double value) { return std::isnan(value) ? -std::numeric_limits<double>::infinity() : value; }
@@ -36,8 +36,8 @@ std::span<const double> ranked_shares(const SobolResult& found, std::size_t r) {
   return (found.Sh.empty() ? found.aggregated.ST : found.Sh).value.row(r);
 }
 
-/// The groups in the order that the user chose. Groups have no index per unit, so the order by index is the order by
-/// share.
+/// The groups in the order that the user chose. Indices here are shares without a unit, so RowOrder::index is the same
+/// as RowOrder::effect.
 std::vector<std::size_t> ordered(const SobolResult& found, std::size_t r, RowOrder order) {
   std::vector<std::size_t> rows = by_size(ranked_shares(found, r));
   if (order == RowOrder::study) rows = positions(found.groups());
@@ -56,7 +56,7 @@ FilledColumn share_column(std::string name, std::string heading, std::span<const
           [shares](std::size_t g) { return number_cell(shares[g]); }};
 }
 
-/// Extends the list `columns` by columns with the shares of a response and their intervals.
+/// Appends to `columns` the shares of the variance of response r, and the ends of their intervals.
 void append_shares(std::vector<FilledColumn>& columns, const std::string& name,
                    const Shares<axis::Response, axis::ErrorGroup>& shares, std::size_t r) {
   columns.push_back(share_column(name, name, shares.value.row(r)));
@@ -138,7 +138,8 @@ std::string constant_vectors_text(const SobolResult& found) {
                      one ? "it" : "them");
 }
 
-/// The table of total indices of all vectors, a column for each, ordered by the first vector that varies.
+/// The table of total indices of all vectors, with a column for each vector. The lines are ordered by the first vector
+/// that varies.
 Table vectors_table(const StoredResult& result) {
   const SobolResult& found = sobol_of(result);
   const std::vector<std::size_t> vectors = positions(found.vectors.size());
@@ -254,7 +255,7 @@ void add_shares(const StoredResult& result, std::span<const Table> tables, Page&
       percent_text(found.aggregated.conf_level)));
   add_index_bars(result, page, section);
   add_shapley_bars(result, page, section);
-  // Tables of the other responses, which the figure shows only when chosen.
+  // Tables of all responses but the first; the figure shows these responses only if the reader chooses them.
   std::vector<Table> others;
   for (bool first = true; const Table& table : tables) {
     if (!table.name.starts_with("sobol_")) continue;
@@ -337,8 +338,8 @@ void warn(const StoredResult& result, std::vector<std::string>& list) {
   if (!names.empty()) list.push_back(without_sign_text(some_names(names), names.size() > 1) + ".");
 }
 
-/// The shares of errors in the variance, and the variance at each pose. The shares are Shapley effects if there are
-/// any, because they add up to 1; otherwise total indices.
+/// The shares of errors in the variance of the ranking response, and its variance at each pose. The shares are Shapley
+/// effects if there are any, because these add up to 1; otherwise total indices.
 ErrorShares error_shares(const StoredResult& result) {
   const SobolResult& found = sobol_of(result);
   if (found.n.empty()) return {};
@@ -364,8 +365,8 @@ std::string largest_shares(const SobolResult& found, std::span<const double> sha
   return text;
 }
 
-/// The summary at the top of the report, for the response by which errors are ranked. It states Shapley effects if
-/// there are any, otherwise total indices.
+/// The summary at the top of the report, for the response by which errors are ranked. It states total indices, and
+/// Shapley effects if there are any.
 Answer answer(const StoredResult& result) {
   constexpr double kWide = 0.2;
   const SobolResult& found = sobol_of(result);
@@ -402,8 +403,8 @@ Answer answer(const StoredResult& result) {
   return lines;
 }
 
-/// The number by which it is judged which of two results is better: the root mean square of the response over the
-/// samples of all poses.
+/// The figure of merit by which two results are compared: the root mean square of the response over the samples of all
+/// poses.
 std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
   const SobolResult& found = sobol_of(result);
   if (name.empty() || found.mean.empty()) return {};

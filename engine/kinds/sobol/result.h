@@ -21,18 +21,18 @@
 namespace poesy {
 
 namespace axis {
-/// Errors, or groups of errors, among which variances are divided. In a file whose errors are not joined, the axis has
-/// the name "factor".
+/// Errors, or groups of errors, among which variances are divided. In the file of a study that does not join errors,
+/// the axis has the name "factor".
 using ErrorGroup = Axis<"group">;
-using OtherGroup = Axis<"other">;     ///< The second group of a pair.
-using SignedVector = Axis<"vector">;  ///< Vectors with a sign, whose components have one unit.
+using OtherGroup = Axis<"other">;     ///< Second groups of pairs.
+using SignedVector = Axis<"vector">;  ///< Vectors of components with a sign and one unit.
 }  // namespace axis
 
 /// How errors are joined into groups. The errors of a group vary together.
 enum class GroupsBy {
   none,   ///< each error is a group
   limb,   ///< all errors of a limb
-  frame,  ///< all errors of one frame of a limb
+  frame,  ///< all errors of a frame of a limb
   name    ///< groups that the study lists
 };
 
@@ -58,21 +58,21 @@ struct SobolOptions {
   std::vector<NamedGroup> named_groups;  ///< groups that the study lists, for GroupsBy::name
   bool second_order = false;             ///< whether the second-order index of each pair of groups is computed
   bool shapley = false;                  ///< whether Shapley effects are computed
-  Design design = Design::random;        ///< how samples are drawn
+  Design design = Design::random;        ///< how samples are placed
   std::size_t replicates = 16;           ///< number of independent repetitions, for a design that is not random
 };
 
 std::string_view name(GroupsBy by);    ///< The word for this choice in study files.
 std::string_view name(Design design);  ///< The word for this design in study files.
 
-/// The kind of study that divides the variance of each response among the errors, `sobol`.
+/// The kind of study `sobol`, which divides the variance of each response among the errors.
 extern const StudyKind kSobolStudy;
 
 /// Shares that errors or groups have in the variance of some quantities, with confidence intervals. NaN for a quantity
 /// that does not vary (stats/indices.h), and for a group whose errors are correlated with errors of other groups.
 template <NamedAxis... Axes>
 struct Shares {
-  using Values = Array<double, Axes...>;     ///< A share for each quantity and group, possibly at each pose.
+  using Values = Array<double, Axes...>;     ///< A share for each position on the axes.
   using Lengths = typename Values::Lengths;  ///< Lengths of the axes.
 
   Shares() = default;
@@ -118,13 +118,14 @@ struct SobolResult {
   SobolIndices<axis::Response, axis::ErrorGroup> aggregated;
   /// Indices of vectors over all poses, from the traces of their covariances (Gamboa et al. 2014).
   SobolIndices<axis::SignedVector, axis::ErrorGroup> of_vectors;
-  /// Number of pairs of samples from which `at_poses` is computed.
+  /// Number of samples from which `at_poses` is computed: those for which the solves of A, B and the mixture count.
   Array<std::uint64_t, axis::Response, axis::ErrorGroup, axis::Pose> n;
-  Array<double, axis::Response, axis::Pose> mean;      ///< mean of the response
-  Array<double, axis::Response, axis::Pose> variance;  ///< variance of the response, of which the indices are shares
-  Array<std::uint8_t, axis::Response> without_sign;    ///< 1 if no sample of the response was negative, otherwise 0
-  /// Second-order indices of pairs of groups over all poses, without the first-order indices of the two groups.
-  /// Symmetric; NaN for a group with itself.
+  Array<double, axis::Response, axis::Pose> mean;  ///< mean of the response, SI
+  /// Variance of the response, SI; the indices at a pose are shares of it.
+  Array<double, axis::Response, axis::Pose> variance;
+  Array<std::uint8_t, axis::Response> without_sign;  ///< 1 if no sample of the response was negative, otherwise 0
+  /// Second-order indices of pairs of groups over all poses: the share of the variance that the two groups cause only
+  /// together. Symmetric; NaN for a group with itself.
   Shares<axis::Response, axis::ErrorGroup, axis::OtherGroup> S2;
   Shares<axis::Response, axis::ErrorGroup> Sh;  ///< Shapley effects over all poses, which add up to 1
   std::vector<SolveCounts> solves;              ///< [poses] how the solves at each pose ended
@@ -141,8 +142,8 @@ struct SobolResult {
   SolveCounts total() const { return total_of(solves); }     ///< How the solves at all poses ended.
 };
 
-/// Bytes of the numbers of a result whose axes have these lengths. The axis "group" is that of the errors or groups;
-/// "other" has length 0 without second-order indices.
+/// Bytes of the numbers of a result with axes of these lengths. The axis "group" has the errors or groups, whichever
+/// have indices; "other" has length 0 without second-order indices.
 std::size_t sobol_bytes(const AxisLengths& lengths);
 
 /// The Sobol' indices in a stored result. Precondition: the result is of kind `sobol`.

@@ -22,15 +22,15 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The index of a group by which adaptive sampling decides: ST, or the Shapley effect if the group gets no ST.
+/// The index of a group that decides when adaptive sampling ends: ST, or the Shapley effect if the group gets no ST.
 Estimate headline_index(const IndexPanel& panel, const PanelSums& sums, std::size_t r, std::size_t g,
                         double conf_level) {
   return (panel.split[g] != 0 ? sums.shapley(r, g) : sums.aggregated(r, g).total).estimate(conf_level);
 }
 
-/// For each response, the largest index of a group (headline_index()), with the largest half-width of an interval over
-/// all groups. Adaptive sampling ends when these are narrow. Zero for a response that does not vary, so that it causes
-/// no more samples. rounding: [rows] see row_rounding().
+/// For each response, the largest index of a group (headline_index()), with the largest half-width of an interval of
+/// any group. Adaptive sampling ends when these half-widths are small. Zero for a response that does not vary, so that
+/// it causes no more samples. rounding: [rows] see row_rounding().
 std::vector<Estimate> largest_of_responses(const IndexPanel& panel, const PanelSums& sums,
                                            std::span<const double> rounding, double conf_level) {
   const std::vector<std::uint8_t> varies = varying_quantities(panel, sums, rounding);
@@ -59,7 +59,7 @@ struct PanelTree {
   const IndexPanel* panel;
   const PanelDesign* design;
   MergeTree<PanelSums> leaves = {};
-  PanelSums open = {};  ///< sums of the replicate that is not complete
+  PanelSums open = {};  ///< sums of the replicate whose units are not yet all added
 
   std::size_t units_per_leaf() const { return design->independent() ? 1 : design->units_per_replicate(); }
   void add(std::size_t n, PanelSums&& found) {
@@ -71,8 +71,8 @@ struct PanelTree {
     }
     if ((n + 1) % units_per_leaf() == 0) leaves.add(n / units_per_leaf(), open.as_one());
   }
-  /// Reads or writes the sums of these units. In a design that is not random, a sample depends on the number of
-  /// samples, so a longer study cannot continue these sums.
+  /// Reads or writes the sums of these units. In a design that is not random, each sample depends on the number of
+  /// samples of the study, so a longer study cannot continue from these sums.
   void state(Archive& archive, const NumberRange& units) {
     archive.known(design->independent() ? 0 : panel->samples, "is of a design with other samples");
     leaves.state(archive, design->units() / units_per_leaf(), PanelSums(*panel));
@@ -97,7 +97,7 @@ struct PanelJob {
   std::vector<std::uint64_t> sizes() const {
     return {panel.quantities(), panel.groups.size(), panel.poses, panel.pairs.size(), panel.shapley ? 1U : 0U};
   }
-  /// The units that a shard solves. In a design that is not random, they are whole replicates.
+  /// The units that a shard solves. In a design that is not random, they form whole replicates.
   NumberRange units(const Shard& shard) const {
     const std::size_t each = sums().units_per_leaf();
     const NumberRange leaves = shard.of(design.units() / each);
@@ -140,7 +140,7 @@ void set(Indices& indices, const IndexSums& sums, Positions... at) {
   indices.ST.set(sums.total.estimate(indices.conf_level), at...);
 }
 
-/// Sets the numbers of one response.
+/// Sets all numbers of response r in the result.
 void set_response(const IndexPanel& panel, const PanelSums& sums, std::size_t r, SobolResult& found) {
   const double level = found.aggregated.conf_level;
   for (std::size_t g = 0; g < panel.groups.size(); ++g) {
@@ -207,7 +207,7 @@ SobolResult result_of(const Study& study, const IndexPanel& panel, const PanelSu
   leave_out_constant(panel, sums, rounding, found);
   found.solves = sums.solves;
   if (asked_of<SobolOptions>(study.analysis).design != Design::random)
-    return found;  // samples of other designs cannot be replayed
+    return found;  // `poesy replay` cannot repeat samples of other designs
   for (std::size_t m = 0; m < panel.poses; ++m) {
     append_failures(0, PoseIndex(m), sums.failed[m], found.failures);
     found.failed_samples += sums.failures[m];
@@ -226,7 +226,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   return StudyResult{std::move(found), std::nullopt, {}};
 }
 
-/// A panel that is solved at some poses to measure the time.
+/// A panel of which one unit is solved at some poses, to estimate the time of a run.
 struct Trial {
   Trial(const Study& study, const Model& model, const PoseSet& poses)
       : plan(study, poses),

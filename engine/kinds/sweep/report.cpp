@@ -40,7 +40,8 @@ bool has_any(std::span<const double> values) {
   return std::ranges::any_of(values, [](double value) { return !std::isnan(value); });
 }
 
-/// Whether figure of merit q is up to chance: some interval has a width. Without draws, both ends are the value.
+/// Whether figure of merit q is estimated from random draws, so that some interval has a width. Without draws, both
+/// ends of an interval equal the value.
 bool is_by_chance(const SweepResult& found, std::size_t q) {
   for (std::size_t d = 0; d < found.designs(); ++d) {
     if (found.low(q, d) < found.high(q, d)) return true;
@@ -59,8 +60,8 @@ std::string unit_of_change(const SweepResult& found, std::size_t q) {
   return unit == "%" ? " percentage points" : unit.empty() ? "" : " " + unit;
 }
 
-/// What the keys require that differ between designs d and e, if figure of merit q depends on it: "limits". Empty if
-/// the designs compare by it.
+/// The requirement, such as "limits", in which designs d and e differ and on which figure of merit q depends. Empty if
+/// there is none, so that q compares the two designs.
 std::string_view required_otherwise(const SweepResult& found, std::size_t q, std::size_t d, std::size_t e) {
   for (std::size_t k = 0; k < found.keys.size(); ++k) {
     const std::string& key = found.keys[k];
@@ -71,7 +72,8 @@ std::string_view required_otherwise(const SweepResult& found, std::size_t q, std
   return {};
 }
 
-/// What some design requires otherwise than the first one: "limits". Empty if all designs compare by figure of merit q.
+/// The requirement, such as "limits", in which some design differs from the first one and on which figure of merit q
+/// depends. Empty if there is none, so that q compares all designs.
 std::string_view required_otherwise(const SweepResult& found, std::size_t q) {
   for (std::size_t d = 1; d < found.designs(); ++d) {
     if (const std::string_view topic = required_otherwise(found, q, d, 0); !topic.empty()) return topic;
@@ -88,8 +90,8 @@ std::string_view verdict_on_change(double low, double high, bool most_is_best) {
   return (low > 0.0) == most_is_best ? "better" : "worse";
 }
 
-/// The verdict on design d compared with the first one: as verdict_on_change(), or "other limits" if the designs do not
-/// compare.
+/// The verdict on design d compared with the first one: that of verdict_on_change(), or a text like "other limits" if
+/// the two designs differ in a requirement.
 std::string verdict_on_first(const SweepResult& found, std::size_t q, std::size_t d) {
   if (const std::string_view topic = required_otherwise(found, q, d, 0); !topic.empty()) {
     return fmt::format("other {}", topic);
@@ -102,7 +104,7 @@ std::string_view verdict_on_best(const SweepResult& found, std::size_t q, std::s
   return verdict_on_change(found.from_best_low(q, d), found.from_best_high(q, d), found.most_is_best(q) != 0);
 }
 
-/// The designs that have this verdict compared with the best one.
+/// The designs that have this verdict of verdict_on_best().
 std::vector<std::size_t> designs_with(const SweepResult& found, std::size_t q, std::string_view verdict) {
   std::vector<std::size_t> list;
   for (std::size_t d = 0; d < found.designs(); ++d) {
@@ -111,7 +113,7 @@ std::vector<std::size_t> designs_with(const SweepResult& found, std::size_t q, s
   return list;
 }
 
-/// Names of designs: "490, 500 mm" if only one key differs, and it is a number.
+/// The names of designs in one text: "490, 500 mm" if only one key differs and its values are numbers.
 std::string joined_names(const SweepResult& found, std::span<const std::size_t> designs) {
   constexpr std::size_t kMost = 8;
   const bool numbers = found.keys.size() == 1 && has_numbers(found, 0);
@@ -122,8 +124,8 @@ std::string joined_names(const SweepResult& found, std::span<const std::size_t> 
   return some_names(names, kMost) + (numbers && !found.unit(0).empty() ? " " + found.unit(0) : "");
 }
 
-/// A clause on the designs that are or may be as good as the best one: "; not told apart from it: 490, 500 mm". Empty
-/// if nothing can be said of them.
+/// A clause on the designs that equal the best one or are not told apart from it: "; not told apart from it: 490, 500
+/// mm". If draws show that all other designs are worse, the clause says so. Otherwise empty.
 std::string near_best_clause(const SweepResult& found, std::size_t q) {
   std::string text;
   for (const auto& [verdict, words] :
@@ -146,8 +148,9 @@ std::string at_design(const SweepResult& found, std::size_t q, std::size_t d) {
   return fmt::format("{} at {}", value_text(found, q, found.merit(q, d)), design_name(found, d));
 }
 
-/// A sentence on designs that do not compare: "No design is called best, because the limits differ (tip_position): the
-/// yield is 42.3 % at tip_position = 0.1 mm, the first design, and 96.3 % at tip_position = 0.2 mm, the last."
+/// A sentence for designs that differ in a requirement: "No design is called best, because the limits differ
+/// (tip_position): the yield is 42.3 % at tip_position = 0.1 mm, the first design, and 96.3 % at tip_position = 0.2 mm,
+/// the last."
 std::string no_best_text(const SweepResult& found, std::size_t q, std::string_view topic) {
   std::vector<std::string> keys;
   for (std::size_t k = 0; k < found.keys.size(); ++k) {
@@ -179,7 +182,7 @@ std::string best_text(const SweepResult& found, std::size_t q) {
   return text + ").";
 }
 
-/// What the intervals of changes from the best design do not contain.
+/// A note on what the intervals of changes from the best design do not take into account.
 std::string best_note(const SweepResult& found) {
   return fmt::format(
       "against the best: each interval alone has the level {}; the best design was chosen by the same numbers, so its "
@@ -221,7 +224,8 @@ FilledColumn key_column(const SweepResult& found, std::size_t k) {
           [&found, k](std::size_t d) { return number_cell(found.number(d, k), 12); }};
 }
 
-/// True if a table shows changes from the best design: they have intervals, and there are more than two designs.
+/// True if a table shows changes from the best design: they have intervals, no requirement differs, and there are more
+/// than two designs.
 bool shows_best(const SweepResult& found, std::size_t q) {
   return found.designs() > 2 && required_otherwise(found, q).empty() && has_any(found.from_best_low.row(q));
 }
@@ -304,8 +308,8 @@ SolveTally tally(const StoredResult& result) {
   return {"design", design_names(found), 1, found.solves};
 }
 
-/// A sentence on how certain it is which design is the best. Empty if the changes have no intervals, or are
-/// exact.
+/// A sentence on how certain it is which design is the best. Empty if the changes have no intervals or are exact, or if
+/// designs differ in a requirement.
 std::string best_certainty(const SweepResult& found, std::size_t q) {
   const bool is_compared = required_otherwise(found, q).empty() && has_any(found.from_best_low.row(q));
   if (!is_compared || !is_by_chance(found, q)) return {};
@@ -315,8 +319,8 @@ std::string best_certainty(const SweepResult& found, std::size_t q) {
       percent_text(found.conf_level));
 }
 
-/// Whether more samples make the interval of figure of merit q narrower. They do not if errors are drawn from measured
-/// parts, because the number of parts limits what is known of the yield.
+/// Whether more samples make the interval of figure of merit q narrower. For a yield they do not if errors are drawn
+/// from measured parts, because the number of parts limits how well it is known.
 bool narrows(const StoredResult& result, const SweepResult& found, std::size_t q) {
   return found.quantities[q] != kYieldMerit ||
          std::ranges::none_of(readable_settings(result.study_text), [](const auto& setting) {
@@ -403,7 +407,7 @@ class Curves {
 
  private:
   std::vector<double> curve(std::span<const double> values, std::size_t c) const {
-    // Only the values that fill the grid are used. A damaged file may have more designs.
+    // Only values that fill the grid are used, because a damaged file may have more designs.
     const std::span<const double> whole = values.first(grid_.points * grid_.curves);
     const ArrayView<const double, Axis<"point">, Axis<"curve">> grid(whole, {grid_.points, grid_.curves});
     std::vector<double> of_curve;
@@ -481,10 +485,10 @@ MethodWords method(const StoredResult& result) {
   return words;
 }
 
-/// A study cannot have this kind, so there is nothing to run.
+/// Runs nothing, because no study has the kind `sweep`.
 std::optional<StudyResult> run_nothing(const StudyRun&) { return std::nullopt; }
 
-/// Returns an empty outlook, because no study has the kind `sweep`. But every StudyKind needs such a function.
+/// Returns zeros, because no study has the kind `sweep`; a StudyKind must have this function.
 AtPose nothing_at_pose(const Study&) { return {0.0, "values", 0.0, "solves"}; }
 
 const StudyKind kSweepStudy{

@@ -19,8 +19,8 @@ using SweptKey = Axis<"key">;       ///< Keys that differ between designs.
 using Quantity = Axis<"quantity">;  ///< Figures of merit by which designs are compared.
 }  // namespace axis
 
-/// The result of a sweep: figures of merit of several designs of a study. Numbers are in display units, as in the
-/// tables of figures of merit.
+/// The result of a sweep: figures of merit of several designs of a study. Figures of merit are in display units, such
+/// as mm.
 struct SweepResult {
   using Numbers = Array<double, axis::Quantity, axis::Design>;  ///< a number for each figure of merit and design
 
@@ -28,33 +28,35 @@ struct SweepResult {
   std::string response;                                    ///< response that the figures of merit are about
   std::vector<std::string> keys;                           ///< full names of the keys that differ between designs
   Array<std::string, axis::Design, axis::SweptKey> value;  ///< value of each key, as the study states it
-  Array<double, axis::Design, axis::SweptKey> number;      ///< value as a number; NaN for a text
-  Array<std::string, axis::SweptKey> unit;                 ///< unit of these numbers; empty if they have none
-  Array<std::string, axis::Design> content_sha256;         ///< content hash of the result that a run of this design
-                                                           ///< alone has
-  Array<std::string, axis::Design> verdict;                ///< verdict on the limits: "kept", "not kept",
-                                                           ///< "undecided"; "none" without limits
-  std::vector<SolveCounts> solves;                         ///< [designs] how the solves of the design ended
+  /// Value as a number, in `unit`; NaN for a text, or if its unit differs from that of the first design.
+  Array<double, axis::Design, axis::SweptKey> number;
+  Array<std::string, axis::SweptKey> unit;          ///< unit of `number` for each key; empty if it has none
+  Array<std::string, axis::Design> content_sha256;  ///< content hash of the result of a run of this design alone
+  Array<std::string, axis::Design> verdict;         ///< verdict on the limits: "kept", "not kept",
+                                                    ///< "undecided"; "none" without limits
+  std::vector<SolveCounts> solves;                  ///< [designs] how the solves of the design ended
 
-  std::vector<std::string> quantities;               ///< names of the figures of merit: "yield", ...
-  Array<std::string, axis::Quantity> quantity_unit;  ///< unit of each: "%", "mm", ...; empty for pure numbers
+  std::vector<std::string> quantities;  ///< names of the figures of merit, such as "yield"
+  /// Unit of each figure of merit, such as "%" or "mm"; empty if it has none.
+  Array<std::string, axis::Quantity> quantity_unit;
   Array<std::uint8_t, axis::Quantity> most_is_best;  ///< 1 if a larger value is better, otherwise 0
-  /// 1 if both designs judge the same machines, so that the interval of the change is computed from pairs; otherwise 0.
+  /// 1 if all designs judge the same machines, so that intervals of changes are computed from the pairs of verdicts on
+  /// a machine; otherwise 0.
   Array<std::uint8_t, axis::Quantity> is_paired;
   Numbers merit;        ///< figures of merit
-  Numbers low;          ///< lower ends of the intervals of the figures of merit; NaN if there are none
+  Numbers low;          ///< lower ends of the intervals of the figures of merit; NaN without an interval
   Numbers high;         ///< upper ends of the intervals of the figures of merit
   Numbers change;       ///< figure of merit minus that of the first design
   Numbers change_low;   ///< lower ends of the intervals of changes
   Numbers change_high;  ///< upper ends of the intervals of changes
   /// Figure of merit minus that of the best design (best_design()), with the ends of its interval as for changes from
-  /// the first design. Each interval alone has the confidence level, and does not contain that the best design was
-  /// chosen by the same numbers.
+  /// the first design. Each interval alone has the confidence level. It does not take into account that the best design
+  /// was chosen by the same numbers.
   Numbers from_best;
-  Numbers from_best_low;   ///< lower ends of these intervals
-  Numbers from_best_high;  ///< upper ends of these intervals
-  /// Number of machines that are good in this design and rejected in the first one; empty unless yields are
-  /// paired.
+  Numbers from_best_low;   ///< lower ends of the intervals of `from_best`
+  Numbers from_best_high;  ///< upper ends of the intervals of `from_best`
+  /// Number of machines that are good in this design and rejected in the first one; 0 if yields are not paired. The
+  /// lists of machines are empty unless the first design has a yield of machines.
   Array<std::uint64_t, axis::Design> gained;
   Array<std::uint64_t, axis::Design> lost;      ///< number of machines that are rejected in this design and good in the
                                                 ///< first one
@@ -70,7 +72,7 @@ std::string design_name(const SweepResult& found, std::size_t design);
 /// The last part of a key's name; the whole name if another key has the same last part.
 std::string short_key(const SweepResult& found, std::size_t key);
 
-/// The design with the best value of a figure of merit, the first of those that have it; none if all values are NaN.
+/// The design with the best value of a figure of merit, the first of equal ones; none if all values are NaN.
 std::optional<std::size_t> best_design(const SweepResult& found, std::size_t quantity);
 
 /// The sweep in a stored result. Precondition: the result is of kind `sweep`.

@@ -52,7 +52,7 @@ std::string with_unit_of(const SweptNumber& value) {
   return value.unit.empty() ? text : text + " " + value.unit;
 }
 
-/// The values FROM, FROM + STEP, ... up to TO.
+/// The values FROM, FROM + STEP, ... up to TO. text: what the user wrote, for messages. ends: FROM, TO and STEP.
 std::vector<std::string> range(const std::string& text, const std::vector<std::string>& ends) {
   constexpr double kSlack = 1e-9;  // a value may exceed TO by this share of a step, because of rounding
   if (ends.size() != 3) refuse(text, "is neither a list nor a range of three numbers");
@@ -103,7 +103,8 @@ std::string full_name(const std::string& key) { return key.starts_with("geometry
 SweptNumber number_of(const std::string& value) {
   const std::string_view text = trimmed(value);
   const std::size_t end = std::min(text.find_first_not_of("0123456789+-.eE"), text.size());
-  // Removes letters from the end until a number is left: the letter of "1 e" or "2e" begins a unit, not an exponent.
+  // Shortens the number at its end until it can be read: the letter in "1 e" or "2e" belongs to the unit and is no
+  // exponent.
   for (std::size_t length = end; length > 0; --length) {
     const std::optional<double> number = parse_number(trimmed(text.substr(0, length)));
     const std::string_view unit = trimmed(text.substr(length));

@@ -13,7 +13,7 @@ namespace poesy {
 /// A key of a study with the values that it takes in the designs of a sweep.
 struct SweptKey {
   std::string key;                  ///< full name: "mechanism.geometry.R"
-  std::vector<std::string> values;  ///< values as in GivenKey; at least two, all different
+  std::vector<std::string> values;  ///< values as texts, see GivenKey::value; at least two, all different
 };
 
 /// The largest number of designs in a sweep.

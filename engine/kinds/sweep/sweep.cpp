@@ -37,8 +37,8 @@ using Rejected = std::vector<bool>;
 
 /// The numbers of machines that two designs judge differently.
 struct Discordant {
-  std::uint64_t gained = 0;  ///< machines that are rejected only in the first of them
-  std::uint64_t lost = 0;    ///< machines that are rejected only in the other one
+  std::uint64_t gained = 0;  ///< machines that are rejected in the first design but not in the other
+  std::uint64_t lost = 0;    ///< machines that are rejected in the other design but not in the first
 };
 
 Discordant discordant(const Rejected& first, const Rejected& other) {
@@ -50,14 +50,14 @@ Discordant discordant(const Rejected& first, const Rejected& other) {
   return count;
 }
 
-/// Arrays of a result for the changes from one design to all others.
+/// The arrays of a result for the changes from one design to all others, and for the ends of their intervals.
 struct Changes {
   SweepResult::Numbers& value;
   SweepResult::Numbers& low;
   SweepResult::Numbers& high;
 };
 
-/// Collects designs one after the other, and compares each with the first one and with the best one.
+/// Collects the results of designs one after the other, and compares each design with the first and with the best one.
 class Comparer {
  public:
   Comparer(std::span<const SweptKey> keys, std::span<const SweptDesign> designs, std::string response)
@@ -123,8 +123,8 @@ class Comparer {
     found_.response = response_;
   }
 
-  /// Records what the figures of merit of all designs are, from those of the first design. judges_machines: true if the
-  /// machines of that design were judged.
+  /// Records the names and units of the figures of merit, which are those of the first design. judges_machines: true if
+  /// the machines of the first design were judged.
   void begin(const StoredResult& stored, const std::vector<Merit>& merits, bool judges_machines) {
     const bool has_yield = stored.verdicts && stored.verdicts->yield;
     has_machines_ = has_yield && judges_machines;
@@ -176,8 +176,8 @@ class Comparer {
     found_.high(q, d) = own->high;
   }
 
-  /// Counts the machines that a design and the first one judge differently, if all designs have the same machines. With
-  /// adaptive samples, designs may have different numbers of machines.
+  /// For each design, counts the machines that this design and the first one judge differently. Does nothing if designs
+  /// have different numbers of machines, as with adaptive samples.
   void pair_machines() {
     if (!std::ranges::all_of(rejected_, [&](const Rejected& own) { return own.size() == rejected_.front().size(); })) {
       return;
@@ -204,8 +204,8 @@ class Comparer {
     }
   }
 
-  /// Replaces the interval of a change of the yield by the paired interval, which is narrower, because both designs
-  /// have the same machines.
+  /// Replaces the interval of a change of the yield by the interval from paired verdicts. It is narrower, because both
+  /// designs have the same machines.
   void take_pairs(std::size_t from, std::size_t to, MeritChange& change) const {
     const Discordant count = discordant(rejected_[from], rejected_[to]);
     const Interval paired = paired_change(count.gained, count.lost, rejected_[from].size(), found_.conf_level).interval;
@@ -222,8 +222,8 @@ class Comparer {
   std::span<const SweptDesign> designs_;
   std::string response_;
   std::vector<std::vector<Merit>> merits_;  ///< [designs] the figures of merit of each design
-  std::vector<Rejected> rejected_;          ///< [designs] empty unless has_machines_
-  bool has_machines_ = false;               ///< true if the first design has a yield of machines that were judged
+  std::vector<Rejected> rejected_;  ///< [designs] which machines each design rejects; empty unless has_machines_
+  bool has_machines_ = false;       ///< true if the first design has a yield of machines that were judged
   SweepResult found_;
 };
 

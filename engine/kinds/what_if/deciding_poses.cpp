@@ -8,7 +8,7 @@
 namespace poesy {
 namespace {
 
-/// [settings][sliders] Factors at which the sliders stand when poses are chosen.
+/// [settings][sliders] The settings of the sliders for which poses are chosen, as factors.
 std::vector<std::vector<double>> settings(std::size_t sliders) {
   constexpr std::array kAlike{1.0, 0.25, 0.5, 0.75, 1.25, 1.5, 2.0};
   std::vector<std::vector<double>> list;
@@ -65,7 +65,7 @@ class PoseCover {
 
   std::vector<std::vector<std::uint8_t>> rejected_;
   std::size_t machines_;
-  /// [settings x machines] 1 if a machine is rejected, but at none of the poses chosen so far.
+  /// [settings x machines] 1 if some pose rejects the machine, but none of the poses chosen so far does.
   std::vector<std::uint8_t> left_;
 };
 

@@ -9,15 +9,15 @@
 
 namespace poesy {
 
-/// Poses at which nearly all rejected machines are rejected. A pose rejects a machine that exceeds a limit there.
+/// Poses that together reject nearly all rejected machines. A pose rejects a machine that exceeds a limit there.
 struct DecidingPoses {
   std::vector<std::size_t> places;  ///< positions of these poses in TriedMachines::poses, ascending
-  /// Share of machines that are rejected, but only at other poses: the largest share over all settings of the sliders.
+  /// Share of machines that only other poses reject: the largest share over the tried settings of the sliders.
   double missed;
 };
 
-/// [errors] The factor that multiplies each error if the sliders of the report are at these factors. 1 for errors
-/// without a slider.
+/// [errors] The factor that multiplies the size of each error if the sliders are at `factors`; 1 for an error without a
+/// slider. errors: number of errors.
 std::vector<double> sizes_of(std::span<const SizedErrors> sliders, std::span<const double> factors, std::size_t errors);
 
 /// Chooses at most `most` poses by the machines that they reject at some settings of the sliders: all sliders at the

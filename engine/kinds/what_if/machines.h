@@ -11,14 +11,14 @@
 
 namespace poesy {
 
-/// The first machines of a study, drawn again, whose errors can be scaled. Owns the scratch of one thread. Keeps
+/// The first machines of a study, drawn again, whose errors can be scaled. Owns the scratch memory of one thread. Keeps
 /// references to the plan, the model and the vectors. Precondition: the study draws errors per machine.
 class WhatIfMachines : private UnitSolver {
  public:
   /// The components of all limited vectors (LimitedVector) at a pose, for each machine; NaN if the machine is not
   /// solved.
   using Rows = Array<double, axis::VectorRow, axis::Sample>;
-  /// The derivatives of these components with respect to each error.
+  /// The derivatives of the components of all limited vectors with respect to each error, SI.
   using Slopes = Array<double, axis::VectorRow, axis::Factor>;
 
   /// machines: the number of machines, at most Plan::kUnitSamples and Plan::samples().
@@ -30,8 +30,8 @@ class WhatIfMachines : private UnitSolver {
   /// Solves the machines at a pose. The deviation of each error from its mean is multiplied by a factor; errors that
   /// machines draw anew at each pose keep their size. sizes: [errors] factors.
   Rows solve(PoseIndex pose, std::span<const double> sizes);
-  /// The derivatives at the mean errors, as central differences over half a standard deviation on either side; NaN if a
-  /// solve failed.
+  /// The derivatives at the mean errors: central differences with a step of half a standard deviation. NaN if a solve
+  /// failed.
   Slopes slopes(PoseIndex pose);
 
  private:

@@ -9,7 +9,8 @@
 namespace poesy {
 namespace {
 
-/// The size of an error: the parameter of its distribution that the study states.
+/// The size of an error in display units: the parameter by which the study states its distribution, or the standard
+/// deviation.
 WhatIfSize size_of(const Distribution& error, Dimension dimension) {
   const Unit& unit = display_unit(dimension);
   using enum Distribution::Shape;
@@ -36,8 +37,8 @@ std::vector<WhatIfSize> sizes_of(const Feature& feature) {
   return sizes;
 }
 
-/// Adds to `list` the errors of features that scatter in their tolerance zones. Features with the same name in all
-/// limbs are joined. Returns for each error of the plan whether it was added.
+/// Adds the errors of features that scatter in their tolerance zones to `list`. Features of the same name in several
+/// limbs are joined. Returns whether each error of the plan was added.
 std::vector<bool> add_features(const Study& study, const Plan& plan, std::vector<SizedErrors>& list) {
   const std::vector<std::optional<Distribution>> by_zones = distributions_by_zones(study);
   std::vector<bool> taken(plan.factors().size(), false);

@@ -24,7 +24,7 @@ double largest_magnitude(const TriedMachines& tried, const LimitedVector& vector
 }
 
 /// The limit on a vector as a ScaledLimit. The scale is half the distance between the two ends of the limit, or the
-/// magnitude of its only end. If that is 0, it is the largest magnitude of a component, or 1.
+/// magnitude of its only end. If that is 0, the scale is the largest magnitude of a component, or 1.
 ScaledLimit scaled_limit(const TriedMachines& tried, const LimitedVector& vector) {
   const double from = vector.limit.from();
   const double to = vector.limit.to();
@@ -44,11 +44,11 @@ Eigen::Map<const RowMajor> part_of(const Rows& rows, const ScaledLimit& limit) {
 /// The directions, in the space of a limited vector, in which errors change this vector at one pose.
 struct Directions {
   linalg::Matrix axes;  ///< [rows x rows] orthonormal columns; the direction with the largest effect is the last
-  std::size_t count;    ///< number of directions with an effect of at least a millionth of the largest
+  std::size_t count;    ///< number of directions with an effect of more than a millionth of the largest
 };
 
 Directions directions(const WhatIfMachines::Slopes& slopes, const ScaledLimit& limit, const Plan& plan) {
-  // A direction counts if its squared effect is more than this share of the largest one.
+  // A direction counts if its squared effect is more than this share of the largest squared effect.
   constexpr double kLeast = 1e-12;
   linalg::Matrix effects = part_of(slopes, limit);
   for (std::size_t p = 0; p < plan.factors().size(); ++p) {
@@ -61,12 +61,12 @@ Directions directions(const WhatIfMachines::Slopes& slopes, const ScaledLimit& l
   return {std::move(axes), static_cast<std::size_t>(count)};
 }
 
-/// Replaces limited vectors by vectors with fewer components and the same norms. `count` new components are along the
-/// directions in which errors change the vector. One more is the length of the remaining part, which errors do not
+/// Replaces limited vectors by vectors with fewer components and the same norms. The first new components are along the
+/// directions in which errors change the vector. The last one is the length of the remaining part, which errors do not
 /// change to first order.
 struct FewerRows {
   std::vector<std::vector<Directions>> at;  ///< [limits][poses] directions at each pose
-  std::vector<std::size_t> counts;          ///< [limits] largest number of directions at a pose; 0: all rows are kept
+  std::vector<std::size_t> counts;  ///< [limits] largest number of directions at a pose; 0 if all components are kept
 
   FewerRows(const TriedMachines& tried, const Plan& plan) {
     for (const ScaledLimit& limit : tried.solved_limits) {

@@ -15,33 +15,33 @@ namespace poesy {
 struct ScaledLimit {
   std::size_t first;  ///< position of the row with the first component
   std::size_t rows;   ///< number of components
-  double scale;       ///< divisor, SI: the limit itself, half the distance between its two ends, or its only end
-  double low;         ///< lower end divided by the scale; minus infinity if there is none
-  double high;        ///< upper end divided by the scale; infinity if there is none
+  double scale;  ///< divisor, SI: half the distance between the ends of the limit, or the magnitude of its only end
+  double low;    ///< lower end divided by the scale; minus infinity if there is none
+  double high;   ///< upper end divided by the scale; infinity if there is none
 };
 
 /// Machines with the study's sizes of errors, solved at some poses, and the derivatives of their limited vectors.
 struct TriedMachines {
-  std::vector<std::size_t> poses;  ///< [poses] positions among those of the study
-  /// [poses] The limited vectors of each machine, with as few components as possible.
+  std::vector<std::size_t> poses;  ///< [poses] positions of the poses in the study
+  /// [poses] The limited vectors of each machine, reduced to as few components as possible.
   std::vector<WhatIfMachines::Rows> rows;
-  std::vector<WhatIfMachines::Slopes> slopes;  ///< [poses] derivatives of the vectors
+  std::vector<WhatIfMachines::Slopes> slopes;  ///< [poses] derivatives of the vectors in `rows`
   std::vector<ScaledLimit> limits;             ///< limits on the vectors in `rows`
-  /// These limits for the vectors that WhatIfMachines::solve() gives. The vectors in `rows` have fewer components than
-  /// these, and equal norms.
+  /// The same limits for the vectors that WhatIfMachines::solve() returns. Those vectors have the same norms as the
+  /// vectors in `rows`, but may have more components.
   std::vector<ScaledLimit> solved_limits;
 };
 
-/// Solves the machines at these poses.
+/// Solves the machines at these poses, and computes the derivatives and the scaled limits.
 TriedMachines tried_machines(std::vector<std::size_t> poses, const Plan& plan, const LimitedVectors& vectors,
                              WhatIfMachines& machines);
 
-/// [machines] By how much each machine exceeds its worst limit at a pose, divided by the limit's scale; negative if it
-/// is within all limits. Infinite if it is not solved.
+/// [machines] By how much each machine exceeds its worst limit at a pose, as a share of the limit's scale; negative if
+/// the machine is within all limits, infinite if it is not solved.
 std::vector<double> badness(const WhatIfMachines::Rows& rows, std::span<const ScaledLimit> limits);
 
-/// The limited vectors of each machine at pose k of `tried` if the deviations of its errors are multiplied by these
-/// factors, to first order. sizes: [errors] factors.
+/// The limited vectors of each machine at pose k of `tried`, to first order, if the deviations of the errors from their
+/// means are multiplied by the factors `sizes` [errors].
 WhatIfMachines::Rows changed(const TriedMachines& tried, const WhatIfMachines& machines, std::size_t k,
                              std::span<const double> sizes);
 

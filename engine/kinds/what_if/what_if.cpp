@@ -37,8 +37,8 @@ std::vector<std::size_t> heaviest_poses(std::span<const double> weights) {
   return poses;
 }
 
-/// [errors] The share of each error in the sum of the mean squares of the limited vectors over all limits, and over the
-/// poses with these weights. NaN if a derivative is unknown.
+/// [errors] For each error, its share in the mean square of a limited vector at a pose, summed over all limits and,
+/// with these weights, over the poses. NaN if a derivative is unknown.
 std::vector<double> shares(const TriedMachines& tried, const Plan& plan, std::span<const double> pose_weights) {
   std::vector<double> list(plan.factors().size(), 0.0);
   std::vector<double> squares(list.size());
@@ -60,7 +60,7 @@ std::vector<double> shares(const TriedMachines& tried, const Plan& plan, std::sp
   return list;
 }
 
-/// [poses] The number of machines that each pose rejects, plus one.
+/// [poses] The number of machines that exceed a limit at the pose, plus one.
 std::vector<double> rejects_at(const TriedMachines& tried) {
   std::vector<double> weights;
   for (const WhatIfMachines::Rows& rows : tried.rows) {
@@ -91,11 +91,10 @@ std::vector<SizedErrors> leading(const JudgedMachines& judged, const TriedMachin
 struct Agreement {
   /// Error of the linear prediction that the share `conf_level` of the machines does not exceed; see WhatIf.
   double linear_error = 0.0;
-  double unsolved = 0.0;  ///< largest share of machines that are solved at the study's sizes but not at changed
-                          ///< ones
+  double unsolved = 0.0;  ///< largest share of machines that are predicted, but cannot be solved at the changed sizes
 };
 
-/// [machines] The largest badness() of each machine over these poses.
+/// [machines] The largest badness() of each machine over these poses. at_poses: [poses][machines].
 std::vector<double> worst_of(std::span<const std::vector<double>> at_poses) {
   std::vector<double> worst = at_poses.front();
   for (const auto& one : at_poses) {
@@ -137,7 +136,8 @@ Agreement agreement(const TriedMachines& tried, WhatIfMachines& machines, std::s
   return found;
 }
 
-/// Whether a prediction is possible: all limits are judged at single poses, and there are errors to change.
+/// Whether a prediction is possible: all limits are judged at single poses, all limited responses have a limited
+/// vector, and there are errors to change.
 bool may_be_predicted(const JudgedMachines& judged, const LimitedVectors& vectors) {
   const std::vector<ResponseLimit>& limits = judged.study.analysis.limits;
   return vectors.rows() > 0 && vectors.rows() <= kMostNumbers / kMostMachines &&
@@ -145,8 +145,8 @@ bool may_be_predicted(const JudgedMachines& judged, const LimitedVectors& vector
          judged.machines > 1;
 }
 
-/// Whether the model reaches these poses and the poses before them, from which solves may start. A result file may
-/// contain poses that the model does not reach.
+/// Whether the model reaches these poses, and the pose before each of them, from which solves may start. A result file
+/// may contain poses that the model does not reach.
 bool are_reached(const JudgedMachines& judged, std::span<const std::size_t> poses) {
   return std::ranges::all_of(poses, [&](std::size_t m) {
     return !judged.model.unreachable(judged.poses[PoseIndex(m)]) &&
@@ -154,7 +154,7 @@ bool are_reached(const JudgedMachines& judged, std::span<const std::size_t> pose
   });
 }
 
-/// The numbers that the page needs for its sliders. Errors are numbered in the order of their sliders.
+/// The numbers that the page needs for its sliders. Errors are numbered slider by slider.
 WhatIf packed(const TriedMachines& tried, const WhatIfMachines& machines, std::span<const SizedErrors> sliders,
               const DecidingPoses& deciding, ArrayPool& pool) {
   WhatIf made;

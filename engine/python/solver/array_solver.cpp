@@ -15,8 +15,8 @@
 namespace poesy::python {
 namespace {
 
-/// The largest number of samples in a block. The samples of a block are solved together; with more, the solver's data
-/// do not fit into the processor's caches.
+/// The largest number of samples that are solved together, as a block. With more samples, the solver's data would not
+/// fit into the processor's caches.
 constexpr std::size_t kBlock = 1024;
 
 /// A pose in words, SI: "z = 0.5 m, beta = 20 rad".
@@ -93,9 +93,9 @@ void ArraySolver::solve_in_place(Scratch& scratch, std::span<const double> pose,
   }
 }
 
-/// Solves the samples from `first` to first + count - 1 at pose m, if the job has more samples than a block. The
-/// samples are copied to scratch memory, because in the caller's arrays the samples of one error are farther apart than
-/// in a block.
+/// Solves the samples from `first` to first + count - 1 at pose m of a job with more samples than a block holds. The
+/// samples are copied to scratch memory, because the solver needs the rows of a block (a row for each error) directly
+/// one after the other, and the rows of the caller's arrays are longer.
 void ArraySolver::solve_block(Scratch& scratch, std::span<const double> pose, const ArrayJob& job, std::size_t m,
                               std::size_t first, std::size_t count) const {
   const std::size_t rows = description().responses.size();

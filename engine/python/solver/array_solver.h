@@ -20,11 +20,11 @@ struct ArrayJob {
   std::span<const double> poses;  ///< [poses x pose coordinates], row-major, checked (ArraySolver::check_poses)
   /// [errors x samples] The errors at the first pose; all samples of the first error come first.
   const double* errors;
-  /// Number of elements from the errors of one pose to those of the next; 0 if all poses have the same errors.
+  /// Number of elements from the errors at one pose to the errors at the next; 0 if all poses have the same errors.
   std::size_t step;
   std::size_t samples;  ///< number of samples at each pose
   double* responses;    ///< [poses x responses x samples], row-major; NaN if a sample was not solved
-  SolveStatus* status;  ///< [poses x samples] how the solve of each sample ended; null: not wanted
+  SolveStatus* status;  ///< [poses x samples] how the solve of each sample ended; null if this is not wanted
 };
 
 /// Computes responses for arrays of errors of one mechanism, directly in the caller's memory. Several threads may use
@@ -42,19 +42,19 @@ class ArraySolver {
   /// Throws InputError for the first pose that is not finite or out of reach. poses: [poses x coordinates], SI.
   void check_poses(std::span<const double> poses) const;
 
-  /// Questions about the geometry of the mechanism (mechanism_doubts()).
+  /// Questions about geometry that may be a mistake (mechanism_doubts()).
   std::vector<std::string> doubts() const;
 
-  /// A warning of poses that are farther outside the workspace than it is wide; empty if there are none, or if an
-  /// earlier call returned a warning. poses: [poses x coordinates], SI.
+  /// A warning of poses that are farther outside the workspace than the workspace is wide; empty if there are no such
+  /// poses, or if an earlier call returned a warning. poses: [poses x coordinates], SI.
   std::string far_poses(std::span<const double> poses) const;
 
   /// Solves all samples of a job. between: is called from time to time, and may throw to end the job.
   void solve(const ArrayJob& job, const std::function<void()>& between) const;
 
  private:
-  /// The scratch memory of one call. A call with more samples than fit into a block (kBlock) solves them block by
-  /// block, and uses `errors` and `responses` for the block.
+  /// The scratch memory of one call. A call with more samples than a block holds (kBlock) solves them block by block,
+  /// and copies the errors and responses of each block to `errors` and `responses`.
   struct Scratch {
     std::unique_ptr<Evaluator> evaluator;
     std::vector<double> errors;     ///< [errors x kBlock] errors of a block

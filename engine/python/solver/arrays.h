@@ -25,7 +25,7 @@ enum class Layout {
 struct ErrorArray {
   const double* data;   ///< [errors x samples] errors, in the caller's memory
   std::size_t samples;  ///< number of samples
-  Layout layout;        ///< layout of the errors; an array for their responses must have the same
+  Layout layout;        ///< layout of the errors; the array of their responses must have the same layout
 };
 
 /// Checks an array of errors. Throws TypeError unless it is an array of float64. Throws ValueError unless it has one of
@@ -36,7 +36,8 @@ ErrorArray error_array(const pybind11::object& given, std::size_t errors);
 /// does.
 ErrorArray shared_error_array(const pybind11::object& given, std::size_t errors);
 
-/// Checks an array of errors of shape (M, P) in C order; row m has the errors at pose m. Throws as error_array() does.
+/// Checks an array of errors of shape (poses, errors) in C order; row m has the errors at pose m. Throws as
+/// error_array() does.
 const double* paired_error_array(const pybind11::object& given, std::size_t poses, std::size_t errors);
 
 /// The array for the responses at one pose: a new one if None is given, otherwise the given one after a check. Throws
@@ -45,7 +46,8 @@ const double* paired_error_array(const pybind11::object& given, std::size_t pose
 pybind11::array_t<double> response_array(const pybind11::object& given, std::size_t responses,
                                          const ErrorArray& errors);
 
-/// The array for responses of this shape in C order, as response_array() gives it.
+/// The array for responses of this shape in C order: a new one if None is given, otherwise the given one after a check.
+/// Throws as response_array() does.
 pybind11::array_t<double> response_block(const pybind11::object& given, const std::vector<std::size_t>& shape);
 
 /// The memory for statuses of this shape; null if None is given. Throws TypeError unless the given object is an array
@@ -62,9 +64,9 @@ struct Memory {
 /// Throws ValueError if two arrays share memory.
 void check_apart(std::span<const Memory> arrays);
 
-/// The coordinates of one pose, from an array of shape (C,), or of M poses, from an array of shape (M, C), one pose
-/// after the other, SI. `given` is an array or anything that NumPy converts to one. axes: 1 or 2. Throws TypeError if
-/// the conversion fails. Throws ValueError unless the array has this number of axes and C is the number of pose
+/// The coordinates of poses, SI, one pose after the other. `given` is an array, or anything that NumPy converts to one.
+/// axes: 1 for one pose, an array of shape (C,); 2 for M poses, an array of shape (M, C). Throws TypeError if the
+/// conversion fails. Throws ValueError unless the array has this number of axes and C is the number of pose
 /// coordinates.
 std::vector<double> pose_numbers(const pybind11::object& given, std::size_t axes, const ModelDescription& model);
 

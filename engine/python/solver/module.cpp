@@ -59,7 +59,7 @@ void warn(const std::string& text) {
   if (PyErr_WarnEx(warning.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
 }
 
-/// The attribute of PoesyWarning with the set of doubts that were given as warnings.
+/// The attribute of the class PoesyWarning that holds the doubts that were already given as warnings, a set.
 constexpr char kAsked[] = "_asked";
 
 /// Gives a doubt about a mechanism as a warning, once in a process. Doubts that differ in their numbers only count as
@@ -123,8 +123,8 @@ py::dict units(const ArraySolver& solver) {
   return units;
 }
 
-/// The mechanism that a caller in Python names. A str may be a name of the catalog or a path. A path object is always a
-/// path, so "./" is put in front of one without a folder.
+/// The mechanism that a caller in Python names: a name of the catalog, or a path. A path object is always a path, so
+/// "./" is put in front of a path object without a folder.
 std::string mechanism_text(const py::object& mechanism) {
   const auto text = py::module_::import("os").attr("fspath")(mechanism).cast<std::string>();
   const bool is_bare = text.find('/') == std::string::npos;
@@ -190,7 +190,8 @@ void add_warning(py::module_& module) {
 
 void add_status(py::module_& module) {
   py::dict values;
-  constexpr auto kOfSolves = static_cast<std::size_t>(SolveStatus::by_series);  // this module solves each sample
+  // The number of statuses before by_series, which does not occur here, because this module solves each sample.
+  constexpr auto kOfSolves = static_cast<std::size_t>(SolveStatus::by_series);
   for (std::size_t s = 0; s < kOfSolves; ++s) values[std::string(kStatusNames[s]).c_str()] = s;
   py::object status = py::module_::import("enum").attr("IntEnum")("Status", values);
   status.attr("__module__") = module.attr("__name__");
@@ -239,7 +240,7 @@ void add_at_pose(py::module_& module) {
 PYBIND11_MODULE(poesy_solver, module) {
   using namespace poesy::python;
   py::options options;
-  options.disable_function_signatures();  // the docstrings show the signatures, as type hints
+  options.disable_function_signatures();  // the docstrings begin with signatures of their own
   module.doc() = kModuleText;
   module.attr("__version__") = POESY_VERSION;
   py::register_exception<poesy::InputError>(module, "InputError", PyExc_ValueError).doc() = kInputErrorText;

@@ -15,7 +15,7 @@ namespace {
                    "compare two results that share some");
 }
 
-/// The indices of the options or items to keep, in their new order.
+/// The indices of the options or items of a Comparable that are kept, in their new order.
 using Kept = std::vector<std::size_t>;
 
 template <class Value>
@@ -25,8 +25,7 @@ std::vector<Value> picked(const std::vector<Value>& values, const Kept& kept) {
   return list;
 }
 
-/// The same quantities, options and items as in `from`, but only those options and items that are kept, in their new
-/// order.
+/// A copy of `from` with only those options and items that are kept, in their new order.
 Comparable kept_part(const Comparable& from, const Kept& options, const Kept& items) {
   Comparable part = from;
   part.options = picked(from.options, options);
@@ -91,8 +90,8 @@ Scatter scatter_of(const Comparison& compared, ArrayPool& pool) {
   return scatter;
 }
 
-/// The rank of each of an option's items by the magnitude of its value, from 1 for the largest. Items with unknown
-/// values come last.
+/// The ranks of an option's items by the magnitudes of their values, from 1 for the largest. Items with unknown values
+/// come last. values: [items].
 std::vector<std::size_t> ranks(std::span<const double> values) {
   std::vector<std::size_t> order = positions(values.size());
   const auto key = [&](std::size_t p) { return std::isnan(values[p]) ? -HUGE_VAL : std::abs(values[p]); };
@@ -103,7 +102,7 @@ std::vector<std::size_t> ranks(std::span<const double> values) {
 }
 
 /// The relative change from a to b. Changes below 1e-10 count as zero, because they may be rounding errors of solvers
-/// (about 1e-14 of 1e-3 rad or m).
+/// (about 1e-14 rad or m in values of about 1e-3 rad or m).
 double change_of(double a, double b) {
   constexpr double kRounding = 1e-10;
   const double change = (b - a) / std::abs(a);
@@ -115,7 +114,7 @@ std::string_view overlap(const ComparableQuantity& a, const ComparableQuantity& 
   return a.low[at] <= b.high[at] && b.low[at] <= a.high[at] ? "overlap" : "apart";
 }
 
-/// The table of one option, with the values of the first quantity.
+/// The table of one option, for instance a response, with the values of the first quantity in A and B.
 Table table_of(const Comparison& compared, std::size_t option) {
   const Comparable& all = compared.a;
   const ComparableQuantity& a = all.quantities.front();
@@ -171,8 +170,8 @@ Table totals_table(const Comparison& compared) {
   return table;
 }
 
-/// The clause of a caption that describes the order of bars. If some quantity has different units for its items, the
-/// clause also warns that such values do not compare.
+/// The clause of a caption that describes the order of bars. If the items of some quantity have different units, the
+/// clause also warns that their values do not compare. Empty if items are not ranked.
 std::string order_of(const Comparable& a) {
   const auto differ = [](const ComparableQuantity& quantity) {
     return std::ranges::any_of(quantity.units, [](const std::vector<std::string>& units) {

@@ -8,9 +8,9 @@
 #include <variant>
 #include <vector>
 
-/// Figures as plain values. Numbers are in the unit that the figure shows; NaN means that a number is not known. The
-/// files of this folder and the script that draws the figures (engine/report/html/web) know neither mechanisms nor
-/// kinds of study.
+/// Figures as plain values. Numbers are in the unit that the figure shows; NaN means that a number is not known.
+/// Neither this file nor the script that draws the figures (engine/report/html/web) depends on models of mechanisms or
+/// on kinds of study.
 namespace poesy {
 
 /// The name of an array in an ArrayPool; empty: no array.
@@ -19,8 +19,8 @@ using ArrayName = std::string;
 /// Arrays of numbers by name. Each array is stored once, however many figures show it.
 class ArrayPool {
  public:
-  /// Stores values / unit as 32-bit floats; infinities become NaN. If the pool has an array of this name, that array is
-  /// kept, because equal names must mean equal arrays. Returns the name.
+  /// Stores values / unit as 32-bit floats; infinities become NaN. If the pool already has an array of this name, that
+  /// array stays, because equal names must mean equal arrays. Returns the name.
   ArrayName add(const std::string& name, std::span<const double> values, double unit = 1.0);
 
   const std::map<std::string, std::vector<float>>& arrays() const { return arrays_; }  ///< The arrays by their names.
@@ -29,7 +29,7 @@ class ArrayPool {
   std::map<std::string, std::vector<float>> arrays_;
 };
 
-/// A choice between options that the reader of a figure has.
+/// A choice between options, which the reader of a figure makes.
 struct Choice {
   std::string label;                 ///< label of the choice
   std::vector<std::string> options;  ///< options from which the reader chooses
@@ -77,7 +77,7 @@ struct HeatMap {
   std::string column_label;             ///< label of the columns
   std::vector<Coordinate> coordinates;  ///< coordinates of the columns
   ArrayName numbers = {};               ///< numbers of the columns; empty: 0, 1, 2, ...
-  /// First order of the columns: a coordinate's name, or "|name|" for the coordinate's magnitude; empty: order of the
+  /// Initial order of the columns: a coordinate's name, or "|name|" for the coordinate's magnitude; empty: order of the
   /// arrays.
   std::string order = {};
 };
@@ -165,8 +165,8 @@ struct Robot {
   std::vector<PicturedError> errors = {};  ///< errors that the reader can choose
   ArrayName frames = {};                   ///< [poses x frames x 12] origin, x, y and z axis of each frame
   std::size_t limbs = 0;                   ///< number of limbs
-  /// [poses x errors x limbs x 6] The motion of the end of each limb if the error has the size that is shown: rotation,
-  /// and displacement at the base's origin. Empty if the motions are not known.
+  /// [poses x errors x limbs x 6] The motion of the end of each limb if the error has the size that is shown: rotation
+  /// (rad), and displacement at the base's origin (mm). Empty if the motions are not known.
   ArrayName motions = {};
   double exaggeration = 1.0;  ///< initial factor by which motions are enlarged
 };
@@ -182,7 +182,7 @@ struct WhatIfSize {
 struct WhatIfSlider {
   std::string name;                 ///< name of the error, the feature or the part
   std::vector<WhatIfSize> sizes;    ///< sizes in the study
-  std::vector<std::size_t> errors;  ///< indices of these errors in WhatIf::deviations
+  std::vector<std::size_t> errors;  ///< indices of the errors in WhatIf::deviations
   std::vector<double> costs = {};   ///< cost at each of WhatIf::factors; empty: the study states no cost
 };
 
@@ -197,7 +197,7 @@ struct WhatIfLimit {
 /// machines were solved at some of the study's poses. The limits are on components of responses, which are assumed to
 /// change linearly with the errors.
 struct WhatIf {
-  std::vector<double> factors;        ///< factors at which a slider can be, ascending; one of them is 1
+  std::vector<double> factors;        ///< factors from which a slider chooses, ascending; one of them is 1
   std::vector<WhatIfSlider> sliders;  ///< sliders that the reader moves
   /// Limits on the components. The first limit is on the first WhatIfLimit::components of them, the second limit on the
   /// next ones, and so on.
@@ -213,7 +213,7 @@ struct WhatIf {
   double yield_low = 0.0;     ///< lower end of the interval of the study's yield
   double yield_high = 0.0;    ///< upper end of the interval of the study's yield
   double quantile = 0.0;      ///< standard normal quantile for the confidence level of the intervals
-  /// Estimated error of a linearly predicted component if all sizes of errors change by 100 %, as a share of the limit.
+  /// Estimated error of a linearly predicted component if all sizes of errors change by 100 %, as a share of its limit.
   /// The error of smaller changes is proportional to the change.
   double linear_error = 0.0;
   /// Share of machines that the prediction takes for good although the study rejects them at a pose that is not in
@@ -231,8 +231,8 @@ struct FigureSet {
   ArrayPool pool;                            ///< numbers of all figures
 };
 
-/// The figure set as JSON for a script element of HTML; it has no "<". Arrays are little-endian 32-bit floats in
-/// base64.
+/// The figure set as JSON for a script element of HTML; the text contains no "<". Arrays are little-endian 32-bit
+/// floats in base64.
 std::string figures_json(const FigureSet& set);
 
 std::string base64(std::span<const std::byte> bytes);  ///< Bytes as base64 (RFC 4648, with padding).

@@ -17,12 +17,12 @@ namespace {
 // A force smaller than this, relative to the largest force of a limb, counts as zero.
 constexpr double kRounding = 1e-12;
 
-/// The force of a limb or of a drive, at each of the result's poses.
+/// The force of a limb or of a drive at each pose of the result.
 struct Force {
   std::size_t limb;
   /// Index of the driven joint in the limb; none: the force is that of the whole limb.
   std::optional<std::size_t> drive;
-  std::size_t response;     ///< index of the force's response in the result
+  std::size_t response;     ///< index of the response that is this force
   std::vector<double> rms;  ///< [poses] root mean square over the errors, SI
 };
 
@@ -48,7 +48,7 @@ std::vector<Force> forces_of(const ReportKind& kind, const StoredResult& result,
   return list;
 }
 
-/// The largest force at a pose: of a drive if `of_drives` is true, otherwise of a limb.
+/// The largest force at a pose: that of a drive if `of_drives` is true, otherwise that of a limb. SI.
 double largest_at(std::span<const Force> forces, bool of_drives, std::size_t pose) {
   double largest = 0.0;
   for (const Force& force : forces) {
@@ -79,8 +79,8 @@ std::vector<ForcePose> poses_of(const StoredResult& result, const Model& model, 
   return list;
 }
 
-/// The forces at a pose, to be shown as shares. of_limbs, of_drives: the largest force of a limb and of a drive in all
-/// pictures, which are shown as the largest share and as the longest arrow.
+/// The forces at a pose, in the form of shares. of_limbs, of_drives: the largest force of a limb and of a drive in all
+/// pictures (SI), which have the largest share and the longest arrow.
 PartShares shares_at(const Sketch& sketch, std::size_t pose, std::span<const Force> forces, double of_limbs,
                      double of_drives) {
   PartShares parts(sketch);

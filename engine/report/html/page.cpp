@@ -51,8 +51,8 @@ NumberColumn column_of_numbers(const Table& table, std::size_t c) {
   return column;
 }
 
-/// The attributes of a number's cell. They add space after the number, so that the decimal points of a column are
-/// aligned. A point is half as wide as a digit.
+/// The attributes of the cell of a number. They add space after the number, so that the decimal points of a column are
+/// aligned. A decimal point is half as wide as a digit.
 std::string number_attributes(const PrintedNumber& cell, std::size_t longest_tail) {
   const double point = cell.tail == 0 ? 0.5 : 0.0;
   const double room = static_cast<double>(longest_tail - cell.tail) - point;
@@ -69,8 +69,8 @@ bool is_long(const Cell& cell) {
   return text_width(cell.text) > kLong;
 }
 
-/// The attribute of a column's heading. Short texts stay on one line; a column of long texts is wide enough for some
-/// words in each line.
+/// The attribute of the text cells of a column. Short texts stay on one line; a column with a long text is wide enough
+/// for some words in each line.
 std::string_view width_class(const Table& table, std::size_t c) {
   const bool any = std::ranges::any_of(table.rows, [&](const std::vector<Cell>& row) { return is_long(row[c]); });
   return any ? "class=\"long\"" : "";
@@ -86,7 +86,7 @@ std::string row_heading(const PrintedNumber& cell, std::size_t longest_tail) {
   return element("th", cell.text, "scope=\"row\" " + number_attributes(cell, longest_tail));
 }
 
-/// Replaces the hyphen before each number of a text, as in "z -203 mm", by the sign of a negative number.
+/// Replaces the hyphen before each negative number of a text, as in "z -203 mm", by a minus sign.
 std::string with_minus(std::string_view text) {
   std::string printed;
   for (std::size_t at = 0; at < text.size(); ++at) {
@@ -97,8 +97,8 @@ std::string with_minus(std::string_view text) {
   return printed;
 }
 
-/// Replaces "+-" at the beginning of a text, as in "+-0.1 mm", by the printed sign, and hyphens in the coordinates of a
-/// place by minus signs.
+/// The text of a cell as a page prints it. In a column of places, hyphens before numbers become minus signs; in other
+/// columns, "+-" at the beginning of a text, as in "+-0.1 mm", becomes the sign plus-minus.
 std::string printed_text(const Column& column, std::string_view text) {
   if (column.name.ends_with("place")) return with_minus(text);
   return text.starts_with("+-") ? "\u00b1" + std::string(text.substr(2)) : std::string(text);

@@ -12,7 +12,7 @@
 
 namespace poesy {
 
-/// The line by which poesy recognises its reports among other pages. It is in the first kilobyte of the file.
+/// The element by which poesy recognises its reports among other HTML files. It is in the first kilobyte of the file.
 inline constexpr std::string_view kReportMark = "<meta name=\"generator\" content=\"poesy report\">";
 
 /// The text of a file that is part of a report's page: "d3.js", "plot.js", "report.js" (to be run in this order) or

@@ -27,7 +27,7 @@ struct ReportedResult {
   std::shared_ptr<const Study> study = nullptr;  ///< study of the result; null if it cannot be read again
 };
 
-/// The names of those things that are at these indices.
+/// The names of the quantities at these indices.
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things, std::span<const std::size_t> positions);
 /// The indices of the headline's responses (those that a summary shows). The response that ranks errors
 /// (default_ranking()) comes first, and responses that do not vary come last.
@@ -36,12 +36,12 @@ std::vector<std::size_t> headline_order(const StoredResult& result);
 /// responses that do not vary come last.
 std::vector<std::size_t> response_order(const StoredResult& result);
 
-/// The units in which these responses are shown, each in a list of its own.
+/// The units in which these responses are shown: for each response a list with one unit.
 std::vector<std::vector<std::string>> response_units(const StoredResult& result,
                                                      std::span<const std::size_t> responses);
 /// The words of a caption that describe the order of errors. mixed: true if errors have different units.
 std::string order_by_effect(bool mixed);
-bool mixed_units(const std::vector<NamedUnit>& things);  ///< Returns true if the things have different units.
+bool mixed_units(const std::vector<NamedUnit>& things);  ///< Returns true if the units differ.
 
 /// The responses and poses that the figures of a result show. They are limited so that a report stays small.
 struct ShownCells {
@@ -49,7 +49,7 @@ struct ShownCells {
   /// responses outside the headline, and if that is not enough, poses.
   static constexpr std::size_t kMostWithAllResponses = 300'000;
   static constexpr std::size_t kMost = 600'000;         ///< The largest number of values in the figures of a page.
-  static constexpr std::size_t kMostInLayer = 400'000;  ///< The largest number of values in one layer of a figure.
+  static constexpr std::size_t kMostInLayer = 400'000;  ///< The largest number of values of one response.
 
   std::vector<std::size_t> responses;  ///< indices of the responses that are shown
   std::vector<std::size_t> poses;      ///< indices of the poses that are shown, ascending
@@ -112,12 +112,12 @@ class PoseFigures {
   ShownCells shown_;
 };
 
-/// Gives the estimates of a course both ends of their intervals. If the course has half-widths instead of the ends, the
-/// ends are computed from them.
+/// Gives a course of estimates the two ends of each interval. If the course has half-widths instead of ends, the ends
+/// are computed from the half-widths.
 EstimateCourse with_ends(EstimateCourse course);
 
-/// The curve of the estimates of one quantity over the number of samples, with their intervals, in units of `unit`. at:
-/// index of the quantity in the course. array: beginning of the names of the stored arrays.
+/// The curve of the estimates of one quantity over the number of samples, with their intervals, in units of `unit`
+/// (SI). at: index of the quantity in the course. array: beginning of the names of the stored arrays.
 Series series_of(const EstimateCourse& course, std::size_t at, double unit, std::string label, const std::string& array,
                  ArrayPool& pool);
 
@@ -128,19 +128,19 @@ Lines over_samples(const EstimateCourse& course, ArrayPool& pool);
 /// "How sure are ...".
 Section& add_how_sure(Page& page, std::string heading, double conf_level);
 
-/// The ends of a response's limit as marks for the response's distribution or curves. The lower end is left out unless
-/// the response has negative values (has_negative). Empty if the study does not limit the response.
+/// The ends of a response's limit as marks in a figure of the response. The lower end is left out unless the response
+/// has negative values (has_negative). Empty if the study does not limit the response, or limits only its spread.
 std::vector<Mark> limit_marks(const StoredResult& result, std::size_t response, bool has_negative);
 
-/// A sentence for each limit, "gap keeps its limit of 12 mm with 3.05 mm.", or if a yield is judged one sentence on the
-/// yield. Empty if the study states no limits.
+/// A sentence for each limit: "gap keeps its limit of 12 mm with 3.05 mm." If a yield is judged, one sentence on the
+/// yield instead. Empty if the study states no limits.
 std::string limits_text(const StoredResult& result);
 
 /// A clause as a sentence, with a capital letter and a full stop.
 std::string as_sentence(std::string clause);
 
-/// Puts a section on the study's limits in front of all other sections, if the tables include the one of the limits or
-/// of the yield. tables: the result's tables.
+/// Puts a section on the study's limits in front of all other sections, if there is a table of the limits or of the
+/// yield. tables: the result's tables.
 void add_limits(std::span<const Table> tables, Page& page);
 
 /// Adds to the page the section that describes the responses in words.
@@ -151,7 +151,8 @@ void add_responses(const StoredResult& result, Page& page);
 void add_glossary(const StoredResult& result, Page& page);
 
 /// Adds to the page the section on solves that did not converge. The section says how solves ended, shows how many did
-/// not converge for each row (an error, case or size) and pose, and lists failures with the commands that replay them.
+/// not converge for each row of the tally (SolveTally) and each pose, and lists failures with the commands that replay
+/// them.
 void add_outcomes(const ReportKind& kind, const ReportedResult& result, Page& page);
 
 /// Adds to the page the section on what was run, for one result or for several results side by side. For several
@@ -164,7 +165,7 @@ void add_figure(Page& page, Section& section, const std::string& key, Figure fig
 /// A quantity by which results are compared. It has a value for each option and each item, in the unit shown.
 struct ComparableQuantity {
   std::string label;  ///< label for people
-  std::string array;  ///< prefix of the names of the quantity's arrays in the page
+  std::string array;  ///< beginning of the names of the quantity's arrays in the page
   /// [options] The units of the values: a list with one unit for all items, or with one for each item.
   std::vector<std::vector<std::string>> units;
   std::vector<double> value;      ///< [options x items] values
@@ -201,7 +202,7 @@ struct Comparison {
   std::vector<std::string> only_b;  ///< items that only the second result has
 };
 
-/// Compares two results of this kind. Throws InputError if they have nothing in common.
+/// Compares two results of this kind. Throws InputError if they have no option or no item in common.
 Comparison comparison(const ReportKind& kind, const ReportedResult& a, const ReportedResult& b);
 
 /// The tables of a comparison, one for each option.

@@ -13,8 +13,8 @@
 namespace poesy {
 namespace {
 
-constexpr int kLargest = 6;    ///< largest power of ten of a number that is printed with grouped digits
-constexpr int kSmallest = -6;  ///< smallest power of ten of a number that is printed as a decimal number
+constexpr int kLargest = 6;    ///< largest exponent of ten of a number that is printed with grouped digits
+constexpr int kSmallest = -6;  ///< smallest exponent of ten of a number that is printed as a decimal number
 
 /// The number of significant digits in a text; 0 if the text is not a plain number ("75 000", "inf").
 int digits_of(std::string_view text) {
@@ -32,8 +32,8 @@ int digits_of(std::string_view text) {
 /// A number with this many significant digits, including trailing zeros.
 std::string with_digits(double value, int digits) { return fmt::format("{:#.{}g}", value, digits); }
 
-/// The number of significant digits, at most `most`, that the cell's text can have if zeros are appended to it and it
-/// must still be the cell's number, correctly rounded.
+/// The largest number of significant digits, up to `most`, for which the cell's text with appended zeros is still the
+/// cell's number correctly rounded. It is at least the number of digits of the text.
 int full_digits(const Cell& cell, int most) {
   const int shown = digits_of(cell.text);
   const double as_shown = std::strtod(cell.text.c_str(), nullptr);
@@ -83,7 +83,7 @@ PrintedNumber printed(double shown, int digits) {
 
 std::vector<PrintedNumber> printed_numbers(std::span<const Cell> column, int digits) {
   int most = digits;
-  for (const Cell& cell : column) {  // whole numbers are counts or exact, so they do not matter
+  for (const Cell& cell : column) {  // whole numbers are exact, so their digits do not count here
     if (digits == 0 && cell.value && cell.text.find_first_of(".e") != std::string::npos)
       most = std::max(most, digits_of(cell.text));
   }

@@ -18,8 +18,9 @@ struct PrintedNumber {
 
 /// The cells of one column as a page prints them. Zeros are appended so that all numbers have the same number of
 /// significant digits, but only where these zeros are correct digits ("0.5000" below "0.4913"). Large numbers have
-/// groups of digits. Numbers above a million or below a millionth are printed with powers of ten ("4.53 x 10^-7" with
-/// typographic signs). digits: the number of significant digits; 0: as many as the longest number with a fraction has.
+/// groups of digits. Numbers of ten million or more, or below a millionth, are printed with powers of ten ("4.53 x
+/// 10^-7" with typographic signs). digits: the number of significant digits; 0: as many as the longest number with a
+/// fraction has.
 std::vector<PrintedNumber> printed_numbers(std::span<const Cell> column, int digits = 0);
 
 }  // namespace poesy

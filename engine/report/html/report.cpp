@@ -17,7 +17,8 @@
 namespace poesy {
 namespace {
 
-/// The condition number above which a report calls a pose ill-conditioned. By default a study refuses poses above 1e8.
+/// The condition number above which a report calls a pose close to singular. By default a study refuses poses above
+/// 1e8.
 constexpr double kIllConditioned = 1e4;
 
 using Warnings = std::vector<std::string>;
@@ -119,7 +120,8 @@ std::vector<std::string> warnings(const ReportKind& kind, const ReportedResult& 
   return list;
 }
 
-/// "41 errors, ", or "7 fitted errors, " if errors were fitted to measurements; empty if there are none.
+/// The number of errors, for the subtitle: "41 errors, ", or "7 fitted errors, " if errors were fitted to measurements;
+/// empty if there are none.
 std::string errors_text(const ReportKind& kind, const StoredResult& result) {
   if (result.factors.empty()) return {};
   if (!kind.words(result).fitted) return counted(result.factors.size(), "error", "errors") + ", ";
@@ -268,7 +270,8 @@ void add_two(const ReportKind& kind, const ReportedResult& a, const ReportedResu
   }
 }
 
-/// The warnings of several results. Those of equal text are one: "A and B: The model was solved to first order ...".
+/// The warnings of several results. Warnings with the same text become one: "A and B: The model was solved to first
+/// order ...".
 std::vector<std::string> common_warnings(const ReportKind& kind, std::span<const ReportedResult> results) {
   std::vector<std::pair<std::string, std::vector<char>>> list;  // texts, each with the letters of its results
   for (std::size_t n = 0; n < results.size(); ++n) {

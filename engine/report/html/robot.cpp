@@ -22,8 +22,8 @@ constexpr std::size_t kShownAtOnce = 3;   // number of poses that are visible wi
 constexpr std::size_t kMostErrors = 300;  // if a page has more errors, its picture shows no motions
 constexpr std::size_t kOpenRows = 10;     // number of rows that the table of errors shows unfolded
 constexpr double kMillimetres = 1e3;      // millimetres in a metre
-// The share of the picture's size that the largest motion would take if the factor of enlargement were not rounded
-// down.
+// The largest motion is enlarged to at most this share of the height kSketchHeight; the factor of enlargement is
+// rounded down.
 constexpr double kShownMotion = 0.15;
 
 /// A pose that the picture shows.
@@ -37,7 +37,7 @@ struct RobotPose {
 struct RobotError {
   std::size_t at;      ///< index among the errors of the result
   std::size_t factor;  ///< index among the factors of the model
-  double share;        ///< share of the error; NaN if errors have no shares
+  double share;        ///< share of the error (ErrorShares); NaN if errors have no shares
 };
 
 bool finite(const Sketch& sketch) {
@@ -60,7 +60,8 @@ std::optional<std::size_t> extreme(std::span<const double> values, double sign) 
   return found;
 }
 
-/// Collects the home pose and extreme poses for the picture, each once and with the reasons.
+/// Collects the poses for the picture: home, and poses where a quantity is largest or smallest. Each pose is taken
+/// once, with all reasons.
 class PoseChoice {
  public:
   PoseChoice(const StoredResult& result, const Model& model) : result_(&result), model_(&model) {
@@ -138,7 +139,7 @@ PartShares part_shares(const Sketch& sketch, const std::vector<RobotError>& erro
 }
 
 /// A part of a limb between the joints `after` and `before` (see SketchedError), with the sum of the shares of the
-/// errors there.
+/// errors in this part.
 struct RankedPart {
   std::size_t limb;
   std::size_t after;
@@ -191,7 +192,7 @@ std::string title_of(const StoredResult& result, const RobotPose& pose) {
   return pose.pose ? pose_title(result, *pose.pose, pose.why) : "At " + pose.why;
 }
 
-/// Adds the numbers of all frames of a sketch, 12 for each: origin in mm, then the x, y and z axes.
+/// Appends the numbers of all frames of a sketch, 12 for each frame: origin in mm, then the x, y and z axes.
 void add_frames(const Sketch& sketch, std::vector<double>& to) {
   for (const auto& limb : sketch.frames) {
     for (const SketchedFrame& frame : limb) {
@@ -286,8 +287,8 @@ std::string own_words(const StoredResult& result, std::size_t error) {
   return result.mechanism_text.find(words) == std::string::npos ? std::string() : words;
 }
 
-/// A table of the errors with their places, with their descriptions in the mechanism's file, and with their shares if
-/// there are any.
+/// A table of the errors with their places, with the descriptions that the mechanism's file gives them, and with their
+/// shares, if there are any.
 Table errors_table(const StoredResult& result, const Sketch& sketch, std::span<const RobotError> errors,
                    const ErrorShares& shares) {
   Table table{.name = "where_errors_are",

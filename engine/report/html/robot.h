@@ -10,31 +10,31 @@
 
 namespace poesy {
 
-/// Shares of the errors, which colour the picture of the mechanism, and a quantity by which poses for the picture are
-/// chosen.
+/// Shares of the errors, which colour the picture of the mechanism, and a quantity that decides at which poses the
+/// picture shows the mechanism.
 struct ErrorShares {
   std::string what = {};  ///< words for the shares: "share of the mean square of gap"; empty: there are no shares
   std::vector<double> values = {};  ///< [errors of the result] share of each error; NaN or below 0 counts as 0
-  /// The word for errors that are ranked together, "group" or "part"; each of them has an equal part of their share.
-  /// Empty: each error has a rank of its own.
+  /// The word for errors that are ranked together, "group" or "part". The share of such a group is divided equally
+  /// among its errors. Empty: each error is ranked alone.
   std::string joined = {};
   /// Words for the quantity `at_poses`: "the effect of all errors on gap"; empty: there are no such values.
   std::string pose_what = {};
   std::vector<double> at_poses = {};  ///< [poses of the result] quantity by which poses are chosen
 };
 
-/// The share of each of the result's errors if errors are ranked in groups: each member has an equal part of the share
-/// of its group. members: for each group the names of its errors, separated by blanks. shares: the shares of the
+/// The share of each of the result's errors if errors are ranked in groups: the share of a group is divided equally
+/// among its errors. members: for each group the names of its errors, separated by blanks. shares: the shares of the
 /// groups.
 std::vector<double> divided_shares(const StoredResult& result, const std::vector<std::string>& members,
                                    std::span<const double> shares);
 
-/// Returns true if pictures can be made: the model is known and has as many pose coordinates as the result, which is
-/// not certain because a result file may have any number of coordinates.
+/// Returns true if pictures can be made: the model is known, and it has as many pose coordinates as the result. A
+/// damaged result file may have any number of coordinates.
 bool has_pictures(const ReportedResult& reported);
 
-/// The sketch of the mechanism at a pose. None if the model has no picture, or if it cannot reach the pose, because a
-/// result file may have any poses.
+/// The sketch of the mechanism at a pose; an empty pose means home. None if the model has no picture, or if it cannot
+/// reach the pose, because a result file may have any poses.
 std::optional<Sketch> sketch_at(const Model& model, std::span<const double> pose);
 
 /// The title of a picture: "Pose 4 (z -195 mm): WHY".

@@ -10,7 +10,7 @@
 namespace poesy {
 namespace {
 
-/// The description of a thing as a sentence.
+/// The description of an error, a response or a coordinate as a sentence; "-" if it has none.
 std::string sentence(const NamedUnit& thing) {
   std::string text = thing.description;
   if (text.empty()) return "-";
@@ -62,8 +62,8 @@ Table failures_table(const ReportedResult& result) {
   return table;
 }
 
-/// Adds to the page bars that show for each row the share of solves that did not converge, if the result has several
-/// rows (errors, cases or sizes).
+/// Adds to the page bars that show for each row of the tally (SolveTally) the share of solves that did not converge, if
+/// there are several rows.
 void add_bars(const SolveTally& outcomes, Page& page, Section& section) {
   if (outcomes.names.size() < 2) return;
   const std::vector<double> shares = outcomes.shares_by_row();
@@ -231,7 +231,7 @@ void add_outcomes(const ReportKind& kind, const ReportedResult& result, Page& pa
   const StoredResult& stored = result.stored;
   const SolveTally outcomes = kind.tally(stored);
   const SolveCounts total = outcomes.total();
-  if (total.total() == 0 && !outcomes.second) return;  // a study of calibrations does not count its solves
+  if (total.total() == 0 && !outcomes.second) return;  // a calibration of a machine does not count its solves
   const std::string at_first = at_first_fidelity(outcomes);
   Section& section = page.add_section("not-solved", "What was not solved");
   if (total.not_converged() == 0) {

@@ -19,18 +19,18 @@
 namespace poesy {
 namespace {
 
-/// A rank has up to kAhead work units in advance for each of its threads, later up to kMostAhead. The number doubles
-/// each time the rank returns all its outputs within kQuick.
+/// A rank is given up to kAhead pieces of work in advance for each of its threads, later up to kMostAhead. The number
+/// doubles each time the rank has returned all its outputs within kQuick after the last assignment.
 constexpr std::size_t kAhead = 4;
 constexpr std::size_t kMostAhead = 128;
 constexpr std::chrono::milliseconds kQuick{3};
-/// The largest number of units that are handed out but not yet merged. If ranks could use more units, merging on rank 0
-/// would be the bottleneck anyway.
+/// The largest number of pieces of work that are handed out but not yet merged. If ranks could use more, merging on
+/// rank 0 would be the bottleneck anyway.
 constexpr std::size_t kMostSlots = 65536;
 /// The largest number of bytes of outputs that wait on rank 0 to be merged in order.
 constexpr std::size_t kMostWaitingBytes = std::size_t{256} << 20U;
-/// Outputs are collected in a message. It is sent when it has kSendBytes bytes, or when the time kSendEvery has passed
-/// since the previous message.
+/// Outputs are collected in a message. It is sent when it has kSendBytes bytes, when kSendEvery has passed since the
+/// previous message, or when little work is left.
 constexpr std::size_t kSendBytes = std::size_t{16} << 10U;
 constexpr std::chrono::microseconds kSendEvery{500};
 
@@ -52,8 +52,8 @@ class RankPool {
   }
 
  public:
-  /// A function that gives the place (slot) for the output of piece n of the work. It is called in the order of n, from
-  /// one thread at a time.
+  /// A function that returns the slot (place) for the output of piece n of the work. It is called in the order of n,
+  /// from one thread at a time.
   using SlotOf = std::function<std::size_t(std::size_t n)>;
 
   /// Calls deliver(n, slot) after each piece of work n, one at a time, on threads of the pool.
@@ -94,7 +94,7 @@ class RankPool {
     hungry_now_ = false;
   }
 
-  /// Returns true if an exception was thrown.
+  /// Returns true if an exception was thrown in the pool.
   bool failed() const { return failed_; }
 
   /// Ends the pool: work that began is delivered, and no more begins. Throws the exception that was thrown in the pool.
@@ -131,7 +131,7 @@ class RankPool {
   }
 
   SlotOf slot_of_;
-  std::size_t low_;  ///< the pool asks for more work when at most this number of pieces wait
+  std::size_t low_;  ///< the pool asks for more work when only this number of pieces is left in the ranges
   std::mutex mutex_;
   std::condition_variable given_;
   std::condition_variable hungry_;
@@ -186,7 +186,7 @@ class Leader {
     std::chrono::steady_clock::time_point given_at;  ///< time of the last assignment
   };
 
-  /// Called on a thread of the pool.
+  /// Called on a thread of the pool when the work of piece n is done.
   void deliver(std::size_t n) {
     const std::lock_guard lock(mutex_);
     delivered_.push_back(n);
@@ -291,8 +291,8 @@ class Leader {
   std::size_t threads_ = 0;  ///< threads of the ranks that are ready
   std::size_t next_to_give_ = 0;
   std::size_t next_to_merge_ = 0;
-  std::vector<std::uint8_t> done_;  ///< [slots] 1 if the place (slot) has an output that is not yet merged
-  std::vector<std::size_t> bytes_;  ///< [slots] bytes of the output in this place, if another rank sent it
+  std::vector<std::uint8_t> done_;  ///< [slots] 1 if the slot has an output that is not yet merged
+  std::vector<std::size_t> bytes_;  ///< [slots] bytes of the output in the slot if another rank sent it, else 0
   std::size_t waiting_bytes_ = 0;
   std::mutex mutex_;
   std::vector<std::size_t> delivered_;  ///< numbers of the pieces of work that the pool delivered
@@ -335,7 +335,7 @@ class Follower {
   }
 
  private:
-  /// Called on a thread of the pool.
+  /// Called on a thread of the pool when the work of piece n is done.
   void deliver(std::size_t n, std::size_t slot) {
     ByteWriter output;
     Archive archive(output);
@@ -386,7 +386,7 @@ class Follower {
   const RunOptions* options_;
   const SlotWork* work_;
   std::size_t taken_ = 0;  ///< number of pieces of work that the pool has taken
-  /// True if the stage is complete, as the end message says; none before that message.
+  /// What the message `end` says: whether the stage is complete. None before that message.
   std::optional<bool> complete_;
   std::size_t given_ = 0;  ///< number of pieces of work received from rank 0
   std::mutex mutex_;

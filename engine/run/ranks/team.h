@@ -14,7 +14,7 @@
 
 namespace poesy {
 
-/// Messages between the processes (ranks) of one run, as seen from one rank. No function waits.
+/// Messages between the processes (ranks) of one run, as seen from one rank. No function blocks.
 class Ranks {
  public:
   /// A message from one rank to another.
@@ -28,13 +28,14 @@ class Ranks {
   Ranks& operator=(const Ranks&) = delete;
   virtual ~Ranks() = default;
 
-  /// The number of this process. Precondition of all member functions: called from one thread at a time.
+  /// The number of this process, from 0. Precondition of all member functions: they are called from one thread at a
+  /// time.
   virtual std::size_t rank() const = 0;
   /// The number of ranks.
   virtual std::size_t size() const = 0;
   /// A name by which a user can find this process, such as "rank 3 on node7".
   virtual std::string name() const = 0;
-  /// Sends bytes to another rank, and keeps them until they are sent.
+  /// Begins to send bytes to another rank, and keeps them until they are sent.
   virtual void send(std::size_t to, std::shared_ptr<const Bytes> bytes) = 0;
   /// The next message, if one has arrived. Messages of one sender arrive in order. Throws std::bad_alloc if there is no
   /// memory for the message, which is then lost.
@@ -61,7 +62,7 @@ enum class LeaveReason : std::uint64_t { stopped, bad_input, file_trouble, inter
 
 /// The message of a rank that cannot go on.
 struct RankLeft {
-  LeaveReason reason;  ///< kind of the problem
+  LeaveReason reason;  ///< kind of problem
   std::string text;    ///< description of the problem, with the name of the rank
 };
 
@@ -86,12 +87,12 @@ class Team {
   bool leads() const { return ranks_->rank() == 0; }
   /// The connection between the ranks.
   const Ranks& ranks() const { return *ranks_; }
-  /// The threads of all ranks together; known to rank 0 after agree().
+  /// The number of threads of all ranks together; known only on rank 0, after agree().
   std::size_t threads() const { return threads_; }
 
   /// The first call on every rank. It compares the text of the study, which must be the same on all ranks. threads: the
-  /// number of threads of this rank. Returns false on rank 0 if a rank left or stop was set, and on another rank if its
-  /// study differs.
+  /// number of threads of this rank. stop: a flag that stops the run; may be null. Returns false on rank 0 if a rank
+  /// left or stop was set, and on another rank if its study differs.
   bool agree(const std::string& study, std::size_t threads, const std::atomic<bool>* stop);
 
   // Functions for the stages. All ranks go through the stages in the same order.
@@ -105,13 +106,13 @@ class Team {
   void end(bool complete, const Bytes& state);
   /// Other ranks: the final state of the stage on rank 0. Precondition: an end message was received.
   const Bytes& end_state() const { return end_state_; }
-  /// Other ranks: reads an end message. Returns true if the stage is complete.
+  /// Other ranks: reads a message `end`, and keeps its state for end_state(). Returns true if the stage is complete.
   bool take_end(ByteReader& message);
 
   // Functions for the end of the run.
 
-  /// Other ranks: runs the body, waits until rank 0 ends the run, and returns its exit code. An exception of the body
-  /// is sent to rank 0, which reports it. This rank must not send anything afterwards.
+  /// Other ranks: runs the body, waits until rank 0 ends the run, and returns its exit code. If the body throws, the
+  /// message of the exception is sent to rank 0, which reports it. After this call, this rank must send nothing.
   int follow(const std::function<void()>& body);
   /// Other ranks: tells rank 0 why this rank cannot go on.
   void leave(LeaveReason reason, const std::string& problem);
@@ -122,9 +123,9 @@ class Team {
 
   // Functions for messages.
 
-  /// Begins a message of this type.
+  /// Begins a message of this type; the caller appends the content.
   static ByteWriter message(RankMessage about);
-  /// Sends the bytes to another rank and empties them.
+  /// Sends the bytes to another rank, and empties `bytes`.
   void send(std::size_t to, ByteWriter& bytes);
   /// A message that another rank sent.
   struct Received {
@@ -134,8 +135,8 @@ class Team {
     /// Reads the content after the type.
     ByteReader reader() const;
   };
-  /// The next message, if one has arrived. Messages of the types `leaving` and `dismissed` are handled here. Throws
-  /// Dismissed.
+  /// The next message, if one has arrived. Messages of the types `leaving`, `gone` and `dismissed` are handled here and
+  /// not returned. Throws Dismissed.
   std::optional<Received> try_receive();
 
  private:
@@ -160,9 +161,9 @@ class Team {
 /// cores.
 class LookPause {
  public:
-  /// The length of the next sleep.
+  /// The length of the next sleep, which is longer than the previous one up to a limit.
   std::chrono::microseconds next() { return length_ = length_ * 2 < kLongest ? length_ * 2 : kLongest; }
-  /// Call it when a message has arrived.
+  /// Makes the next sleep short again. Call this function when a message has arrived.
   void reset() { length_ = kShortest; }
   /// Sleeps for next().
   void sleep();

@@ -14,10 +14,10 @@
 namespace poesy {
 namespace {
 
-/// Two scaled coordinates that differ by less than this are equal up to rounding.
+/// Two scaled coordinates (0 to 1 over the range of the box) that differ by less than this are equal up to rounding.
 constexpr double kRounding = 1e-12;
 
-/// The number of intervals into which a chord is divided to find changes of feasibility.
+/// The number of intervals into which the part of a line in the box is divided to find changes of feasibility.
 constexpr std::size_t kScanIntervals = 32;
 
 constexpr double kGoldenRatio = 0.6180339887498949;
@@ -28,7 +28,7 @@ double dot(std::span<const double> a, std::span<const double> b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-/// The number of uniforms that unit_vector() needs for a vector with n entries.
+/// The number of uniform random numbers that unit_vector() needs for a vector with n entries.
 std::size_t uniforms_for(std::size_t n) { return n <= 3 ? n - 1 : n; }
 
 /// Computes a vector with n entries that is uniform on the unit sphere, from uniforms_for(n) uniforms; for n = 1 it is
@@ -131,7 +131,8 @@ std::optional<Chord> chord_of(const Line& line) {
   return chord.enter < chord.leave ? std::optional(chord) : std::nullopt;
 }
 
-/// Keeps every point at which the chord enters or leaves the feasible set: the two ends of each feasible piece.
+/// Adds to the collector every point at which the chord enters or leaves the feasible set: the two ends of each
+/// feasible piece of the chord.
 void keep_crossings(const Chord& chord, const Workspace& workspace, PoseCollector& collector) {
   Vector scaled(workspace.coordinates());
   Vector pose(workspace.coordinates());
@@ -158,7 +159,7 @@ void keep_crossings(const Chord& chord, const Workspace& workspace, PoseCollecto
   };
   double before = chord.enter;
   bool inside = false;         // true if the position is in a feasible piece
-  double entry = chord.enter;  // position where the piece begins
+  double entry = chord.enter;  // position where the present feasible piece begins
   for (std::size_t k = 0; k <= kScanIntervals; ++k) {
     const double share = static_cast<double>(k) / static_cast<double>(kScanIntervals);
     const double position = std::lerp(chord.enter, chord.leave, share);
@@ -172,8 +173,8 @@ void keep_crossings(const Chord& chord, const Workspace& workspace, PoseCollecto
   if (inside) keep_piece(entry, chord.leave);
 }
 
-/// Returns true if two poses are equal up to rounding in every scaled coordinate. Poses are sorted along a direction
-/// that is not parallel to a face of the cube, so only near neighbours need to be compared.
+/// Returns true if two of the collected poses are equal up to rounding in every scaled coordinate. The poses are sorted
+/// along a direction that is not parallel to a face of the cube, so only near neighbours need to be compared.
 bool some_coincide(const Workspace& workspace, const PoseCollector& collector) {
   const std::size_t count = collector.kept();
   const std::size_t coordinates = workspace.coordinates();

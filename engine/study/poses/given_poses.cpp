@@ -27,7 +27,8 @@ Function interpolated(std::vector<double> time, std::vector<double> values) {
   };
 }
 
-/// The point of a trajectory as a function of time: [coordinates], SI.
+/// The point of a trajectory as a function of time (s). The point is in the coordinates of the trajectory
+/// (PoseTable::chart), SI. The trajectory and the model must outlive the function.
 std::function<std::vector<double>(double time)> path_of(const Trajectory& trajectory, const ModelDescription& model) {
   if (trajectory.curve) {
     return [&at = model.curves[*trajectory.curve].at, &origin = trajectory.origin](double time) {
@@ -50,8 +51,8 @@ std::function<std::vector<double>(double time)> path_of(const Trajectory& trajec
   };
 }
 
-/// A point as text. as_in_file: true for values in SI, the unit of the file, with angles also in degrees: "z = 0.5 m,
-/// beta = 20 rad = 1145.92 deg"; false for the units that results show.
+/// A point as text. as_in_file: true: values are in SI, and angles also in degrees: "z = 0.5 m, beta = 20 rad = 1145.92
+/// deg"; false: values are in the units that results show.
 std::string point_text(std::span<const double> point, const std::vector<PoseCoordinate>& coordinates, bool as_in_file) {
   std::string text;
   for (std::size_t c = 0; c < point.size(); ++c) {
@@ -64,17 +65,17 @@ std::string point_text(std::span<const double> point, const std::vector<PoseCoor
   return text;
 }
 
-/// The words with which a message refuses a point of a table.
+/// The parts of the message that refuses point m of a table.
 struct PointRefusal {
   std::function<Place(std::size_t m)> place;        ///< place of point m
   std::function<std::string(std::size_t m)> point;  ///< name of point m in messages, such as "pose 1 (...)"
   std::string if_unreachable;                       ///< advice for a point out of reach
   std::string if_singular;                          ///< advice for a singular point
-  std::string note;                                 ///< text after the advice
+  std::string note;                                 ///< text that follows the advice
 };
 
-/// The poses of all points of a table. Throws InputError for the first point that is singular or out of reach, and
-/// SearchStopped if `watch` ends the search.
+/// The poses of all points of a table. Throws InputError for the first point that gives no pose, is out of reach or
+/// singular, and SearchStopped if `watch` stops the search.
 SelectedPoses poses_of(const PoseTable& table, const PointRefusal& refusal, const Model& model, double max_condition,
                        const WatchSearch& watch) {
   SelectedPoses selected;

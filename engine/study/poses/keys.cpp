@@ -50,7 +50,7 @@ void read_limits(const StudyValue& value, Study& study, const Reading&) {
   });
 }
 
-/// Reads the key `count`: a whole number, or for a grid a table with a number for every pose coordinate.
+/// Reads the key `count`: a whole number or, for a grid, a table with a whole number for each pose coordinate.
 void read_count(const StudyValue& value, Study& study, const Reading&) {
   PoseSelection& selection = study.poses;
   selection.count_place = value.place();
@@ -72,7 +72,8 @@ void read_count(const StudyValue& value, Study& study, const Reading&) {
   selection.count = static_cast<std::size_t>(product);
 }
 
-/// Reads the key with the name of a pose file, and the file itself unless the study is read with StudyUse::evaluate.
+/// Reads the key `file` with the name of a pose file, and the file itself unless the study is read for
+/// StudyUse::evaluate.
 void read_pose_file(const StudyValue& value, Study& study, const Reading& reading) {
   study.poses.file = value.text();
   if (reading.use == StudyUse::evaluate) return;
@@ -120,8 +121,9 @@ const InnerRows<Trajectory>& trajectory_keys() {
   return keys;
 }
 
-/// The range of time that the study takes from the range `whole`: all of `whole` if the study states no range. Throws
-/// InputError if the study's range goes beyond `whole`. what: name of `whole` in messages.
+/// The part of a trajectory that the study takes, as a range of times (s): the key `time`, or `whole` if the key is
+/// missing. whole: the range of the whole trajectory. Throws InputError if the key's range goes beyond `whole`. what:
+/// noun phrase for the whole trajectory in messages.
 Range part_of(const StudySection& section, const Trajectory& trajectory, const Range& whole, const std::string& what) {
   const Range time = trajectory.time.value_or(whole);
   if (time.lower < whole.lower || time.upper > whole.upper) {
@@ -154,8 +156,7 @@ void read_curve(const StudySection& section, const StudyValue& value, const Mode
   trajectory.time = part_of(section, trajectory, {curve.start, curve.end}, "curve '" + curve.name + "'");
 }
 
-/// Reads the key with the name of a trajectory's file, and the file itself unless the study is read with
-/// StudyUse::evaluate.
+/// Completes a trajectory from a file, and reads the file unless the study is read for StudyUse::evaluate.
 void read_curve_file(const StudySection& section, const ModelDescription& model, const Reading& reading,
                      Trajectory& trajectory) {
   section.refuse("origin", "a trajectory from a file, whose points are as they are");
@@ -189,7 +190,7 @@ void read_trajectory_key(const StudyValue& value, Study& study, const Reading& r
   study.poses.trajectory = std::move(trajectory);
 }
 
-/// A range as a TOML list.
+/// A range as a TOML list. value: function that writes the ends, such as exact_value().
 std::string range_text(const Range& range, Dimension dimension, ValueText value) {
   return fmt::format("[{}, {}]", value(range.lower, dimension), value(range.upper, dimension));
 }
@@ -202,8 +203,8 @@ std::string workspace_text(const std::vector<Range>& workspace, const ModelDescr
          "\n";
 }
 
-/// A trajectory as a TOML table. It names the curve and the curve's origin, or the file with the points. The number of
-/// poses and the range of time follow if the trajectory states them.
+/// A trajectory as a TOML table: the curve and its origin, or the file with the points, then the number of poses and
+/// the range of time if the trajectory has them. value: function that writes quantities, such as exact_value().
 std::string trajectory_text(const Trajectory& trajectory, const ModelDescription& model, ValueText value) {
   std::string text = "file = " + in_quotes(trajectory.file);
   if (trajectory.curve) {
@@ -249,7 +250,7 @@ std::string shown_count(const TemplateLines& lines, const Study& study) {
   return lines.usual("poses", "count") + "# count = " + grid + "\n";
 }
 
-/// The workspace of the model as ranges, SI.
+/// The workspace that the model states, as a range for each pose coordinate, SI.
 std::vector<Range> usual_workspace(const ModelDescription& model) {
   std::vector<Range> workspace;
   for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {

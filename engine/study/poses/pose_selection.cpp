@@ -32,8 +32,8 @@ SelectedPoses interior_poses(const PoseSelection& selection, const Model& model,
   return std::move(collector).result();
 }
 
-/// Adds all feasible points of a grid to an empty collector; the last coordinate changes fastest. counts: the number of
-/// points along each coordinate.
+/// Adds all feasible points of a grid to an empty collector and returns it. The last coordinate changes fastest.
+/// counts: the number of points along each coordinate.
 PoseCollector grid_points(PoseCollector collector, std::span<const std::size_t> counts, const Workspace& workspace) {
   std::vector<double> scaled(counts.size());
   std::vector<double> pose(counts.size());
@@ -50,8 +50,8 @@ PoseCollector grid_points(PoseCollector collector, std::span<const std::size_t> 
   return collector;
 }
 
-/// The number of points of a grid with `number` points along each coordinate. If it exceeds `most`, the result is some
-/// number above `most`, because the exact one might overflow.
+/// The number of points of a grid with `number` points along each coordinate. If it exceeds `most`, the result is only
+/// some number above `most`, because the exact number might overflow.
 std::size_t grid_size(std::size_t number, std::size_t coordinates, std::size_t most) {
   std::size_t size = 1;
   for (std::size_t c = 0; c < coordinates && size <= most; ++c) size *= number;
@@ -69,7 +69,7 @@ SelectedPoses grid_poses(const PoseSelection& selection, const Model& model, con
   const std::size_t most = most_candidates(selection.count);
   std::size_t number = 1;
   while (grid_size(number, workspace.coordinates(), most) < selection.count) ++number;
-  std::size_t tested = 0;  // number of candidates in all grids so far; `feasible` counts the feasible ones of them
+  std::size_t tested = 0;  // number of points of all grids so far, of which `feasible` are feasible
   std::size_t feasible = 0;
   for (;; ++number) {
     PoseCollector points = grid_points(PoseCollector(workspace, selection.count, watch, tested),
@@ -86,8 +86,8 @@ SelectedPoses grid_poses(const PoseSelection& selection, const Model& model, con
   }
 }
 
-/// Returns the poses with the number of candidates set to 0: how many candidates a boundary search rejects says nothing
-/// about the workspace.
+/// Returns the poses with the number of candidates set to 0, because the candidates that a boundary search rejects say
+/// nothing about the workspace.
 SelectedPoses without_candidates(SelectedPoses selected) {
   selected.candidates = 0;
   return selected;
@@ -120,7 +120,8 @@ std::string rejected_text(std::span<const RejectedPoses> rejected, std::size_t c
   constexpr std::size_t kMost = 3;  // largest number of reasons in the sentence, without "out of reach"
   if (rejected.empty() || candidates == 0) return {};
   std::size_t all = 0;
-  std::size_t out_of_reach = 0;  // the exact reason differs from pose to pose, so only the number is stated
+  // the exact reason differs from pose to pose, so only the number of these poses is stated
+  std::size_t out_of_reach = 0;
   std::size_t others = 0;
   std::vector<std::string> reasons;
   for (const RejectedPoses& one : rejected) {

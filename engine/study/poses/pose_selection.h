@@ -17,7 +17,7 @@
 
 namespace poesy {
 
-/// An immutable list of poses with the same number of coordinates, SI.
+/// An immutable list of poses with the same number of coordinates. Coordinates are in SI.
 class PoseSet {
  public:
   PoseSet() = default;
@@ -56,14 +56,14 @@ struct Range {
   double upper;  ///< upper end, SI
 };
 
-/// Points, in the pose's own coordinates or in the coordinates of one of the model's charts.
+/// Points that give poses, in the model's pose coordinates or in the coordinates of one of its charts (PoseChart).
 struct PoseTable {
-  std::optional<std::size_t> chart;    ///< index of the model's chart; none: the pose's own coordinates
-  PoseSet points;                      ///< coordinates of the points, SI
+  std::optional<std::size_t> chart;    ///< index in ModelDescription::charts; none: the model's pose coordinates
+  PoseSet points;                      ///< [points] coordinates of each point, SI
   std::vector<std::string> bare = {};  ///< names of the coordinates for which the file states no unit
 };
 
-/// The coordinates of the model's chart with this index; if `chart` is empty, the coordinates of a pose.
+/// The coordinates of the model's chart with this index; if `chart` is empty, the model's pose coordinates.
 const std::vector<PoseCoordinate>& coordinates(const ModelDescription& model, std::optional<std::size_t> chart);
 
 /// The points of a trajectory, with the times at which the trajectory passes them.
@@ -72,24 +72,25 @@ struct TimedPoints {
   PoseTable table;           ///< points, in the order of time
 };
 
-inline constexpr double kLatestTime = 1e9;  ///< largest time before or after 0, s: about 30 years, far from overflow
+inline constexpr double kLatestTime = 1e9;  ///< largest magnitude of a time, s: about 30 years, far from overflow
 
 /// A trajectory in a study: a named curve of the model, or points of a file.
 struct Trajectory {
-  std::optional<std::size_t> curve = {};  ///< index of the model's curve; none: points of a file
-  std::vector<double> origin = {};        ///< point that is added to the curve: coordinates of the curve's chart, SI
-  std::string file = {};                  ///< name of the file in the study; empty for a curve
-  TimedPoints from_file = {};             ///< points of the file, at least two; empty if the file was not opened
-  std::size_t points = 0;  ///< number of poses, evenly spaced in time; 0: the poses are the points of the file
-  /// Start and end of the trajectory, s; none if `points` is 0, or if the file determines them and was not opened.
+  std::optional<std::size_t> curve = {};  ///< index in ModelDescription::curves; none: points of a file
+  /// Point that is added to every point of the curve: coordinates of the curve's chart, SI.
+  std::vector<double> origin = {};
+  std::string file = {};       ///< name of the file in the study; empty for a curve
+  TimedPoints from_file = {};  ///< points of the file, at least two; empty if the file was not opened
+  std::size_t points = 0;      ///< number of poses, evenly spaced in time; 0: the poses are the points of the file
+  /// Start and end of the trajectory, s. None if `points` is 0, or if they follow from a file that was not opened.
   std::optional<Range> time = {};
-  Place first_row = {};  ///< place of the first point in the file; each further point is one line below
+  Place first_row = {};  ///< place of the first point in the file; each further point is one line further down
 };
 
-/// The points of a trajectory. A curve gives points at evenly spaced times, including both ends. A file gives its own
-/// points, or points that are interpolated at evenly spaced times. Each coordinate is interpolated independently of the
-/// others, by a modified Akima spline through four or more points, or by straight lines through two or three.
-/// Precondition: the file was opened, and the times are inside its range.
+/// The points of a trajectory: of a curve, points at evenly spaced times, including both ends; of a file, its own
+/// points if Trajectory::points is 0, otherwise points that are interpolated at evenly spaced times. Each coordinate is
+/// interpolated independently of the others, by a modified Akima spline through four or more points, or by straight
+/// lines through two or three. Precondition: a file was opened, and the times are inside its range.
 TimedPoints sampled(const Trajectory& trajectory, const ModelDescription& model);
 
 /// The range in which a joint's displacement from home must be, including both ends.
@@ -105,46 +106,48 @@ struct PoseSelection {
   enum class Select { interior, file, boundary, grid, trajectory };
 
   Select select = Select::interior;  ///< how poses are chosen; it determines which members below are used
-  /// Number of poses. With grid_counts it is the product of these numbers, for a trajectory the number of its points.
+  /// Number of poses. With grid_counts it is the product of these numbers; for a trajectory it is the number of its
+  /// points; for `file` it is unused.
   std::size_t count = 0;
   std::vector<std::size_t> grid_counts;  ///< number of points for each pose coordinate, with `grid`; otherwise empty
-  /// Box that is searched: a range for each pose coordinate; empty for selections that do not search.
+  /// [pose coordinates] Box in which `interior`, `boundary` and `grid` search poses; empty for other selections.
   std::vector<Range> workspace;
-  std::vector<JointLimit> limits;  ///< limits of joints, for selections that search a box
-  double max_condition = 1e8;      ///< largest condition number of a pose; above it a pose counts as singular
-  std::string file;                ///< for `file`: name of the file in the study
-  PoseTable from_file;             ///< for `file`: poses of the file
+  std::vector<JointLimit> limits;  ///< limits of joints, for selections with a box
+  /// Largest condition number (Model::condition) of a pose; above it a pose counts as singular.
+  double max_condition = 1e8;
+  std::string file;     ///< for `file`: name of the file in the study
+  PoseTable from_file;  ///< for `file`: poses of the file
   /// For `trajectory`: the trajectory; none if the study is read for StudyUse::evaluate and states none.
   std::optional<Trajectory> trajectory;
-  /// Place of the workspace, of the file's first pose (each further pose is one line below), or of the trajectory; for
-  /// messages.
+  /// Place of the workspace, of the file's first pose (each further pose is one line further down), or of the
+  /// trajectory; for messages.
   Place place;
   Place count_place;  ///< place of the key `count`, for messages
 };
 
-/// The number of poses that were refused for one reason.
+/// The number of poses that a search rejected for one reason.
 struct RejectedPoses {
-  std::string reason;  ///< the reason in words: "q_1_3 above 80 mm"
-  std::size_t count;   ///< number of poses that were refused for this reason
+  std::string reason;  ///< reason in words: "q_1_3 above 80 mm"
+  std::size_t count;   ///< number of poses that were rejected for this reason
 };
 
 /// The beginning of RejectedPoses::reason for poses that the mechanism cannot reach.
 inline constexpr std::string_view kOutOfReach = "out of reach: ";
 
-/// Returns true if the mechanism cannot reach some of these poses, so that not only limits of the study reject poses.
+/// Returns true if some of these poses were rejected because the mechanism cannot reach them.
 bool some_out_of_reach(std::span<const RejectedPoses> rejected);
 
-/// A sentence on the poses of a workspace that are not in a study: how many of the examined poses, and why. Empty if
-/// there are none. candidates: number of poses that the search examined; if it is 0 (not known), the sentence is empty.
+/// A sentence that says how many of the examined poses of a workspace were rejected, and why. Empty if none was.
+/// candidates: number of poses that the search examined; if it is 0 (not known), the sentence is empty.
 std::string rejected_text(std::span<const RejectedPoses> rejected, std::size_t candidates);
 
-/// The poses of a selection, and the poses that it rejected.
+/// The poses that select_poses() found, and statistics of the poses that it rejected.
 struct SelectedPoses {
   PoseSet poses;                        ///< selected poses
   std::vector<double> condition;        ///< condition number at each pose; see Model::condition
   std::vector<RejectedPoses> rejected;  ///< numbers of rejected poses by reason, most frequent first
-  /// Number of poses that an interior or grid search examined; 0 for other selections. A boundary search rejects poses
-  /// in any workspace, so its numbers say nothing about the workspace.
+  /// Number of poses that an interior search, or a grid search in its last grid, examined; 0 for other selections. A
+  /// boundary search rejects poses in any workspace, so its number would say nothing about the workspace.
   std::uint64_t candidates = 0;
   std::vector<double> time;  ///< [poses] time of each pose of a trajectory, s, ascending; empty for other selections
 };
@@ -156,36 +159,38 @@ struct PoseSearch {
   std::size_t candidates;  ///< number of poses that were examined
 };
 
-/// A function that a search calls after each pose that it examined; the search stops if the function returns false.
+/// A function that a search calls for each pose that it examines; the search stops if the function returns false.
 using WatchSearch = std::function<bool(const PoseSearch&)>;
 
-/// Selects the study's poses; the result depends only on the arguments. A pose of the box is feasible if the model
-/// reaches it, every limited joint stays in its range, and the condition number at the pose is at most max_condition.
+/// Selects the study's poses; the result depends only on the arguments. The box is PoseSelection::workspace. A pose in
+/// it is feasible if the model reaches it, every joint with a limit is within its range, and the condition number is at
+/// most max_condition.
 ///
-/// - interior: the first `count` feasible points of the Sobol' sequence in the box. A smaller set is the beginning of a
-/// larger one.
-/// - boundary: points of the feasible set's boundary, uniform by area; see boundary_poses(). A smaller set is the
-/// beginning of a larger one.
+/// - interior: the first `count` feasible points of the Sobol' sequence in the box. The poses for a smaller `count` are
+/// the first of those for a larger one.
+/// - boundary: points on the boundary of the feasible set, uniform by area; see boundary_poses(). Also here the poses
+/// for a smaller `count` are the first of those for a larger one.
 /// - grid: with grid_counts, all feasible points of the grid that has these numbers of points; the last coordinate
 /// changes fastest. The points divide each range evenly, both ends included; a count of 1 gives the middle of the
-/// range. Without grid_counts, it is the coarsest grid that has the same number of points along each coordinate and at
-/// least `count` feasible points; `count` of these are kept, evenly spread.
-/// - file: the poses of the file, which may be given in the coordinates of a chart.
+/// range. Without grid_counts, the coarsest grid is used that has the same number of points along each coordinate and
+/// at least `count` feasible points, of which `count` are kept, evenly spread.
+/// - file: the poses of the file, which may state them in the coordinates of a chart.
 /// - trajectory: the poses of sampled(), in the order of time.
 ///
-/// Throws InputError if the box gives fewer poses than wanted: at the place of a joint limit if this limit is the most
-/// frequent reason of rejection, otherwise at the place of the selection. An interior search gives up after max(100
-/// 000, 100 count) candidates, or after 50 000 candidates in a row without a feasible one. For a boundary see
-/// boundary_poses(). Every search gives up if the first 3000 candidates are all out of reach. A grid search gives up
-/// before a grid with more than max(100 000, 100 count) candidates. It also gives up after 100 000 candidates in all
-/// grids if, with the share of them that is feasible, the largest such grid would give less than a quarter of the
-/// poses. Throws InputError at count_place if poses of the boundary coincide up to rounding. Throws InputError for the
-/// first pose of a file or a trajectory that does not exist, is out of reach or exceeds max_condition: at the line of
-/// the file if the poses are the points of a file, otherwise at the study's trajectory.
+/// Throws InputError if the box gives fewer than `count` poses (with grid_counts: no pose): at the place of a joint
+/// limit if this limit is the most frequent reason of rejection, otherwise at the place of the selection. An interior
+/// search gives up after max(100 000, 100 count) candidates, or after 50 000 candidates in a row without a feasible
+/// one. For a boundary see boundary_poses(). With grid_counts, all points are examined. Without them, a grid search
+/// gives up before a grid with more than max(100 000, 100 count) points. It also gives up after 100 000 candidates in
+/// all grids if, at their share of feasible points, the largest such grid would give less than a quarter of the poses.
+/// A search without grid_counts also gives up if 3000 or more candidates (of one grid) are examined and all are out of
+/// reach. Throws InputError at count_place if poses of the boundary coincide up to rounding. Throws InputError for the
+/// first pose of a file or a trajectory that does not exist, is out of reach or has a condition number above
+/// max_condition: at the line of the file if the poses are the points of a file, otherwise at the study's trajectory.
 SelectedPoses select_poses(const PoseSelection& selection, const Model& model);
 
-/// Selects poses like select_poses() above, and reports progress to `watch`, which may be empty. None if `watch`
-/// stopped the search.
+/// Selects poses like select_poses() above, and reports progress to `watch`, which may be empty. None if `watch` stops
+/// the search.
 std::optional<SelectedPoses> select_poses(const PoseSelection& selection, const Model& model, const WatchSearch& watch);
 
 }  // namespace poesy

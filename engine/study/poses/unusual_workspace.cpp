@@ -14,9 +14,9 @@ namespace {
 
 constexpr int kDigits = 6;
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
-constexpr double kRounding = 1e-9;  ///< tolerance at the ends of a workspace, as a share of its range
+constexpr double kRounding = 1e-9;  ///< tolerance at the ends of a workspace, as a share of the coordinate's range
 
-/// The range of coordinate c in the workspace that the mechanism states.
+/// The range of coordinate c in the workspace that the mechanism states, SI.
 Range own_range(const ModelDescription& model, std::size_t c) {
   POESY_EXPECTS(c < model.pose_lower.size() && c < model.pose_upper.size());
   return {model.pose_lower[c], model.pose_upper[c]};
@@ -34,12 +34,13 @@ std::string both_ranges(std::span<const Range> box, const ModelDescription& mode
                      range_text(box[c], coordinate.dimension), range_text(own_range(model, c), coordinate.dimension));
 }
 
-/// The length that two ranges have in common; zero or less if they have none.
+/// The length of the overlap of two ranges; zero or less if they do not overlap.
 double common_length(const Range& a, const Range& b) { return std::min(a.upper, b.upper) - std::max(a.lower, b.lower); }
 
 double largest_magnitude(const Range& range) { return std::max(std::abs(range.lower), std::abs(range.upper)); }
 
-/// Says in which coordinate most of the box and most of the poses are outside the mechanism's workspace.
+/// A clause that names the first coordinate in which most of the box and most of the poses are outside the mechanism's
+/// workspace; empty if there is none.
 std::string mostly_outside_clause(std::span<const Range> box, const PoseSet& poses, const ModelDescription& model) {
   for (std::size_t c = 0; c < box.size(); ++c) {
     const Range own = own_range(model, c);
@@ -53,7 +54,8 @@ std::string mostly_outside_clause(std::span<const Range> box, const PoseSet& pos
   return {};
 }
 
-/// Says which angle of the box is more than a full turn, although no angle of the mechanism's workspace is.
+/// A clause that names the first angle that goes beyond +-360 deg in the box, but not in the mechanism's workspace;
+/// empty if there is none.
 std::string full_turn_clause(std::span<const Range> box, const ModelDescription& model) {
   for (std::size_t c = 0; c < box.size(); ++c) {
     if (model.pose_coordinates[c].dimension != Dimension::angle) continue;

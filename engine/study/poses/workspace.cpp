@@ -78,7 +78,7 @@ void PoseCollector::keep_first(std::size_t count) {
 
 void PoseCollector::thin_to(std::size_t count) {
   for (std::size_t m = 0; m < count; ++m) {
-    const std::size_t from = m * kept() / count;  // because from >= m, no pose is overwritten before it is copied
+    const std::size_t from = m * kept() / count;  // since from >= m, no pose is overwritten before it is copied
     std::ranges::copy(pose(from), values_.begin() + std::ptrdiff_t(m * workspace_->coordinates()));
     condition_[m] = condition_[from];
   }

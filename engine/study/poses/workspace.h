@@ -12,18 +12,20 @@
 
 namespace poesy {
 
-/// Tells whether a pose of the box is feasible, and if it is not, why.
+/// The result of Workspace::judge(): whether a pose is feasible and, if it is not, why.
 struct Judgement {
   double condition = 0.0;  ///< condition number of a feasible pose
   std::string reason;      ///< reason why the pose is not feasible; empty for a feasible pose
-  /// Place in the study of the joint limit, or of the selection, that refuses the pose; null for a feasible pose.
+  /// Place in the study of the joint limit that rejects the pose, or of the selection if no joint limit does; null for
+  /// a feasible pose.
   const Place* place = nullptr;
   std::string_view remedy;  ///< advice on how to make such poses feasible
 
   bool feasible() const { return reason.empty(); }  ///< Returns true if the pose is feasible.
 };
 
-/// The box of a selection. Scaled coordinates go from 0 to 1 over each range of the box.
+/// The box of a selection (PoseSelection::workspace), with the rules for feasible poses. Scaled coordinates go from 0
+/// to 1 over each range of the box.
 class Workspace {
  public:
   /// Both arguments must outlive the workspace.
@@ -36,7 +38,7 @@ class Workspace {
   /// Converts one coordinate of a pose (SI) to its scaled coordinate.
   double scaled(std::size_t coordinate, double value) const;
   Judgement judge(std::span<const double> pose) const;  ///< Tells whether a pose (SI) is feasible.
-  /// Says in which coordinate the box is apart from the workspace that the mechanism states; see apart_clause().
+  /// The apart_clause() of the box: empty if it overlaps the workspace that the mechanism states.
   std::string apart() const;
 
  private:
@@ -44,17 +46,17 @@ class Workspace {
   const Model* model_;
 };
 
-/// Thrown to end a search that the watcher stopped. The overload of select_poses() with a watcher catches it.
+/// The exception by which tell() ends a search. The overload of select_poses() with a parameter `watch` catches it.
 struct SearchStopped {};
 
 /// Reports the progress of a search to `watch`, if it is not empty. Throws SearchStopped if `watch` returns false.
 void tell(const WatchSearch& watch, const PoseSearch& search);
 
-/// A search gives up after this many candidates in a row that gave no pose.
+/// An interior or boundary search gives up after this many candidates in a row that gave no pose.
 inline constexpr std::size_t kMostInVain = 50'000;
 
-/// A search gives up after this many candidates if all of them are out of reach. They are fewer than kMostInVain,
-/// because it takes some 20 ms to find that a mechanism from a file does not reach a pose.
+/// A search gives up after this many candidates if all of them are out of reach. The number is smaller than
+/// kMostInVain, because it takes some 20 ms to find that a mechanism from a file does not reach a pose.
 inline constexpr std::size_t kMostOutOfReach = 3'000;
 
 /// Collects feasible poses, and counts infeasible ones by reason.
@@ -66,7 +68,7 @@ class PoseCollector {
       : workspace_(&workspace), watch_(&watch), wanted_(wanted), before_(before) {}
 
   /// Examines a candidate. If it is feasible, returns its condition number; otherwise counts the reason and returns
-  /// none. Throws SearchStopped if the watcher stops the search.
+  /// none. Throws SearchStopped if `watch` stops the search.
   std::optional<double> test(std::span<const double> pose);
   void keep(std::span<const double> pose, double condition);  ///< Adds a feasible pose and its condition number.
 
@@ -80,8 +82,8 @@ class PoseCollector {
   void keep_first(std::size_t count);                 ///< Keeps only the first `count` poses.
   /// Keeps `count` of the poses, evenly spread over their order. Precondition: count <= kept().
   void thin_to(std::size_t count);
-  /// Throws an InputError that says that the box gives fewer poses than wanted. workspace_place: place of this error if
-  /// no candidate was rejected.
+  /// Throws an InputError that says that the box gives fewer poses than wanted, at the place of the most frequent
+  /// reason of rejection, or at workspace_place if no candidate was rejected.
   [[noreturn]] void fail(const Place& workspace_place) const;
   SelectedPoses result() &&;  ///< The kept poses, and the numbers of rejected poses by reason, most frequent first.
 
@@ -118,13 +120,13 @@ SelectedPoses trajectory_poses(const PoseSelection& selection, const Model& mode
 /// that are uniform by area (Crofton). A shifted Sobol' sequence generates such lines: their direction is uniform, and
 /// their offset from the cube's centre is uniform in a ball of dimension C - 1 that covers the cube. Every point where
 /// a line crosses the boundary of the feasible set is a pose. To find these points, the part of the line in the box is
-/// divided into 32 intervals. If feasibility differs at the ends of an interval, bisection refines the crossing to
-/// rounding and keeps the feasible side. A pose on a face of the box is exactly on this face. The search may miss a
-/// feasible piece or an infeasible gap that is shorter than an interval, and it leaves out pieces shorter than
-/// rounding. The numbers of rejected poses include the ends of the intervals.
+/// divided into 32 intervals. If one end of an interval is feasible and the other is not, bisection finds the crossing
+/// up to rounding, and the point on the feasible side is taken. A pose on a face of the box is exactly on this face.
+/// The search may miss a feasible piece or an infeasible gap of the line that is shorter than an interval, and it
+/// leaves out pieces whose length is below rounding. The infeasible ends of the intervals count as rejected poses.
 ///
 /// Throws InputError if max(20 000, 100 count) lines do not give enough poses, if kMostInVain examined points in a row
-/// give no pose, if the first kMostOutOfReach are all out of reach, or if poses coincide up to rounding.
+/// give no pose, if kMostOutOfReach or more are examined and all are out of reach, or if poses coincide up to rounding.
 SelectedPoses boundary_poses(const PoseSelection& selection, const Model& model, const WatchSearch& watch = {});
 
 }  // namespace poesy
