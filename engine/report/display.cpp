@@ -144,6 +144,11 @@ Column percent_column(std::string name, std::string heading, int dispensable) {
   return number_column(std::move(name), std::move(heading), "%", dispensable);
 }
 
+Column main_column(Column column) {
+  column.main = true;
+  return column;
+}
+
 void fill(Table& table, const std::vector<std::size_t>& positions, const std::vector<FilledColumn>& columns) {
   for (const FilledColumn& one : columns) table.columns.push_back(one.column);
   for (const std::size_t position : positions) {

@@ -66,6 +66,7 @@ Column text_column(std::string name, std::string heading, int dispensable = 0);
 /// A column of numbers. unit: unit of all numbers; empty if the numbers have no unit, or have different units.
 Column number_column(std::string name, std::string heading, std::string_view unit = "", int dispensable = 0);
 Column percent_column(std::string name, std::string heading, int dispensable = 0);  ///< A column of shares, in percent.
+Column main_column(Column column);  ///< The same column, which a narrow page never hides (Column::main).
 
 /// A column and a function that makes its cells.
 struct FilledColumn {

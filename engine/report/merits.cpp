@@ -251,10 +251,10 @@ std::optional<Table> merits_table(std::span<const std::vector<Merit>> results) {
   Table table{.name = "merits",
               .caption = merits_caption(results, shared.front()),
               // A narrow page hides the dispensable columns first, and then the others from right to left.
-              .columns = {text_column("quantity", "quantity"), text_column("result", "in"),
+              .columns = {text_column("quantity", "quantity"), main_column(text_column("result", "in")),
                           text_column("verdict", "verdict"), number_column("change", "change"),
                           number_column("change_low", "low", "", 1), number_column("change_high", "high", "", 1),
-                          number_column("value", "value"), number_column("low", "low", "", 1),
+                          main_column(number_column("value", "value")), number_column("low", "low", "", 1),
                           number_column("high", "high", "", 1), text_column("unit", "unit")},
               .notes = {"low, high: intervals of the value, and of its change as if both results were drawn "
                         "independently; common draws make it wider than it need be"}};

@@ -27,6 +27,8 @@ struct Column {
   int dispensable = 0;
   /// True if a page leaves the column out, because tolerance frames in another column show the same content.
   bool only_text = false;
+  /// True if a narrow page never hides the column. If no column of a table is main, its first number is never hidden.
+  bool main = false;
 };
 
 /// A cell of a table.

@@ -45,10 +45,14 @@ class Browser:
         """The page, with all its figures drawn."""
         self.driver.get_log("browser")
         self.driver.get_log("performance")
-        size = {"width": width, "height": HEIGHT, "deviceScaleFactor": 1, "mobile": False}
-        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+        self.resize(width)
         self.set_scheme(scheme)
         self.driver.get(Path(page).as_uri())
+        self.settle()
+
+    def resize(self, width):
+        size = {"width": width, "height": HEIGHT, "deviceScaleFactor": 1, "mobile": False}
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
         self.settle()
 
     def set_scheme(self, scheme):
@@ -95,9 +99,7 @@ class Browser:
     def printed_width(self, paper):
         """The width of the page on paper so wide; what is wider is printed smaller."""
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
-        size = {"width": paper, "height": HEIGHT, "deviceScaleFactor": 1, "mobile": False}
-        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
-        self.settle()
+        self.resize(paper)
         return self.run("return document.scrollingElement.scrollWidth")
 
     def print(self, path):

@@ -62,6 +62,7 @@ class PageTest(unittest.TestCase):
         checks.not_empty()
         self.check_fits(width)
         self.assertEqual(self.sideways(), [])
+        self.assertEqual(self.without_numbers(), [])
         self.assertEqual(self.browser.violations(), [])
         if width == max(WIDTHS):
             self.browser.set_scheme("dark")  # whose colours are the same at all widths
@@ -85,6 +86,7 @@ class PageTest(unittest.TestCase):
         self.assertLessEqual(self.browser.printed_width(PAPER), PAPER)
         self.assertEqual(self.small_on_paper(), [])
         self.assertEqual(self.loose_notes(), [])
+        self.assertEqual(self.lonely_rows(), [])
         for pictures, in_first_line in self.lines_of_pictures():
             self.assertEqual(in_first_line, min(pictures, 3))
 
@@ -99,11 +101,35 @@ class PageTest(unittest.TestCase):
             """return [...document.querySelectorAll(".table-wrap")].filter((wrap) => wrap.scrollWidth > wrap.clientWidth + 1)
               .map((wrap) => wrap.dataset.table)""")
 
+    def without_numbers(self):
+        """The tables that do not show the names of their rows, or of two results not both, or none of their numbers."""
+        return self.browser.run(
+            """const seen = (cell) => {
+              const box = cell.getBoundingClientRect();
+              const frame = cell.closest(".table-wrap").getBoundingClientRect();
+              return box.width > 0 && box.left >= 0 && box.right <= Math.min(innerWidth, frame.right + 1);
+            };
+            return [...document.querySelectorAll(".table-wrap")].filter((wrap) => {
+              const cells = [...(wrap.querySelector("tbody tr")?.cells ?? [])];
+              const numbers = cells.filter((cell) => cell.matches("td.n"));
+              const needed = [...wrap.querySelectorAll("thead th")].filter((head) => /^[AB]$/.test(head.textContent));
+              const names = cells.filter((cell) => cell.matches("th"));
+              return ![...names, ...needed].every(seen) || (numbers.length > 0 && !numbers.some(seen));
+            }).map((wrap) => wrap.dataset.table)""")
+
     def loose_notes(self):
         """Notes that a page break may separate from their table, where the page is printed."""
         return self.browser.run(
             """return [...document.querySelectorAll(".table-wrap ~ .note")]
               .filter((note) => getComputedStyle(note).breakBefore !== "avoid").map((note) => note.textContent)""")
+
+    def lonely_rows(self):
+        """The tables of which a page break may leave one or two rows, where the page is printed."""
+        return self.browser.run(
+            """return [...document.querySelectorAll(".table-wrap")].filter((wrap) => {
+              const breaks = [...wrap.querySelectorAll("tbody tr")].map((row) => getComputedStyle(row).breakAfter);
+              return [...breaks.slice(0, 2), ...breaks.slice(-3, -1)].some((one) => one !== "avoid");
+            }).map((wrap) => wrap.dataset.table)""")
 
     def lines_of_pictures(self):
         """Of each figure of the mechanism the number of pictures, and of those in its first line, where it is printed."""
@@ -130,7 +156,78 @@ class PageTest(unittest.TestCase):
         self.assertLessEqual(self.browser.run("return document.scrollingElement.scrollWidth"), width)
 
 
+def table(name, caption, heads, row):
+    """A table as a report has it, with one row. heads: the columns, each with its heading and its attributes."""
+    cells = "".join(f'<td{" class=n" if "class=n" in attributes else ""}>{text}</td>'
+                    for (_, attributes), text in zip(heads[1:], row[1:]))
+    columns = "".join(f'<th scope="col" {attributes}>{heading}</th>' for heading, attributes in heads)
+    return (f'<div class="table-wrap" tabindex="0" role="group" aria-label="{name}" data-table="{name}"><table>'
+            f'<caption>{caption}</caption><thead><tr>{columns}</tr></thead>'
+            f'<tbody><tr><th scope="row">{row[0]}</th>{cells}</tr></tbody></table></div>')
+
+
+NUMBER = "class=n"
+LONG_NAME = "lean_of_the_first_left_rail"
+TABLES = {
+    "behind": ([("feature", ""), ("zone", ""), ("effect [mm]", NUMBER), ("share [%]", NUMBER)],
+               ["feature", "effect [mm]"], [LONG_NAME, "0.05 mm to the planes A, B", "0.01234", "12.3"]),
+    "compared": ([("error", ""), ("A", NUMBER), ("B", NUMBER), ("unit", ""), ("change [%]", NUMBER)],
+                 ["error", "A", "B", "unit"], [LONG_NAME, "0.0012345678", "0.0023456789", "mm", "12.3"]),
+    "marked": ([("quantity", ""), ("in", "data-main"), ("change", NUMBER), ("value", f"{NUMBER} data-main"),
+                ("unit", "")],
+               ["quantity", "in", "value", "unit"], [LONG_NAME, "A", "0.0012345678", "0.0023456789", "mm"]),
+    "ranked": ([("error", "data-spare=3"), ("effect [mm]", NUMBER), ("index [mm/unit]", NUMBER), ("sigma", NUMBER)],
+               ["error", "effect [mm]"], [LONG_NAME, "0.0012345678", "0.0023456789", "0.0012345678"]),
+}
+
+
 class Figures(PageTest):
+    def open_tables(self, width, style=""):
+        """A page with TABLES, with a caption that has not enough room on one line."""
+        caption = "The drawing: tolerances of 5 parts, each with the same share of the limit that it uses most"
+        tables = "".join(table(name, caption, heads, row) for name, (heads, _, row) in TABLES.items())
+        page = figures_page(WEB, add_bars).replace('<main id="main">', f'<main id="main"><section>{tables}</section>')
+        self.open(page.replace("</style>", f"{style}</style>", 1), width)
+
+    def shown(self):
+        """The headings of TABLES that are seen."""
+        return self.browser.run(
+            """return Object.fromEntries(arguments[0].map((name) => [name,
+              [...document.querySelectorAll(`[data-table=${name}] thead th`)]
+                .filter((head) => head.getBoundingClientRect().width).map((head) => head.textContent)]))""",
+            list(TABLES))
+
+    def test_names_and_main_numbers_stay_on_a_narrow_page(self):
+        self.open_tables(400)
+        shown = self.shown()
+        for name, (_, staying, _) in TABLES.items():
+            with self.subTest(table=name):
+                self.assertLessEqual(set(staying), set(shown[name]))
+        self.assertEqual(self.sideways(), [])
+        self.assertEqual(self.without_numbers(), [])
+
+    def test_names_are_broken_behind_underscores_and_copied_whole(self):
+        self.open_tables(400)
+        cell = "document.querySelector('[data-table=compared] tbody th')"
+        self.assertEqual(self.browser.run(f"return {cell}.textContent"), LONG_NAME)
+        self.assertEqual(self.browser.run(f"return {cell}.querySelectorAll('wbr').length"), LONG_NAME.count("_"))
+
+    def test_captions_do_not_widen_tables(self):
+        self.open_tables(400, "main { padding: 0 25px }")
+        self.assertEqual(self.sideways(), [])
+        self.assertEqual(self.without_numbers(), [])
+
+    def test_tables_fit_in_the_frame_that_shows_a_new_width(self):
+        self.open_tables(500)
+        self.browser.run(
+            """addEventListener("resize", () => {
+              const isWide = (wrap) => wrap.scrollWidth > wrap.clientWidth + 1;
+              const wide = [...document.querySelectorAll(".table-wrap")].filter(isWide);
+              window.wide = wide.map((wrap) => wrap.dataset.table);
+            })""")
+        self.browser.resize(400)
+        self.assertEqual(self.browser.run("return window.wide"), [])
+
     def test_every_type_of_figure(self):
         page = self.folder / "figures.html"
         page.write_text(figures_page(WEB))

@@ -96,6 +96,7 @@ Table residuals_table(const StoredResult& result) {
   columns.push_back(
       value("fitted", kValueDigits, [&](std::size_t i) { return found.measured(i) - found.residual(i); }));
   columns.push_back(value("residual", kResidualDigits, [&](std::size_t i) { return found.residual(i); }));
+  columns.back().column.main = true;
   if (found.noise_is_known != 0) {
     columns.push_back({number_column("residual_over_sd", "residual/sd"),
                        [&](std::size_t i) { return number_cell(found.standardised(i), kResidualDigits); }});

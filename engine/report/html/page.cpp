@@ -32,6 +32,7 @@ std::string column_heading(const Column& column) {
       column.unit.empty() || column.unit == "1" ? column.heading : fmt::format("{} [{}]", column.heading, column.unit);
   std::string attributes = column.kind == Column::Kind::number ? "scope=\"col\" class=\"n\"" : "scope=\"col\"";
   if (column.dispensable > 0) attributes += fmt::format(" data-spare=\"{}\"", column.dispensable);
+  if (column.main) attributes += " data-main";
   return element("th", text, attributes);
 }
 

@@ -128,6 +128,21 @@ TEST(HtmlTable, NamesRowsByTheFirstNumberWhereItHasNoTexts) {
   EXPECT_EQ(html.find("<th scope=\"row\">"), std::string::npos) << html;
 }
 
+TEST(HtmlTable, MarksColumnsThatAreHiddenFirstAndThoseThatAreNeverHidden) {
+  const Table table{.name = "t",
+                    .caption = "c",
+                    .columns = {{"error", "error", ""},
+                                {"x", "x", "mm", Column::Kind::number, 2},
+                                {"y", "y", "mm", Column::Kind::number}},
+                    .rows = {}};
+  Table marked = table;
+  marked.columns[2].main = true;
+  const std::string html = html_table(marked);
+  EXPECT_NE(html.find("<th scope=\"col\" class=\"n\" data-spare=\"2\">x [mm]</th>"), std::string::npos) << html;
+  EXPECT_NE(html.find("<th scope=\"col\" class=\"n\" data-main>y [mm]</th>"), std::string::npos) << html;
+  EXPECT_EQ(html_table(table).find("data-main"), std::string::npos);
+}
+
 TEST(HtmlTable, GivesLongNamesOfRowsLines) {
   const Table table{.name = "t",
                     .caption = "c",
