@@ -44,6 +44,18 @@ std::string names_and_sizes(const std::vector<UnallocatedError>& errors) {
   return fmt::format("{}", fmt::join(texts, "; "));
 }
 
+/// A clause on what finds tolerances of these errors.
+std::string_view remedy_text(const std::vector<UnallocatedError>& errors) {
+  if (std::ranges::all_of(errors, &UnallocatedError::is_per_pose)) {
+    return "no part can have them, because a machine draws them anew at each pose";
+  }
+  return std::ranges::any_of(errors, &UnallocatedError::is_per_pose)
+             ? "a part of [[analysis.parts]] that names them finds the tolerances of those that a machine does not "
+               "draw "
+               "anew at each pose"
+             : "a part of [[analysis.parts]] that names them finds their tolerances";
+}
+
 }  // namespace
 
 std::vector<UnallocatedError> errors_in_no_part(const Study& study) {
@@ -58,7 +70,8 @@ std::vector<UnallocatedError> errors_in_no_part(const Study& study) {
     const Distribution& drawn = study.errors.by_factor[factor.value];
     errors.push_back({{described.name, std::string(si_unit(described.dimension))},
                       std::string(name(drawn.shape())),
-                      drawn.standard_deviation()});
+                      drawn.standard_deviation(),
+                      study.errors.is_per_pose(factor)});
   }
   return errors;
 }
@@ -72,7 +85,8 @@ std::vector<UnallocatedError> errors_in_no_part(const StoredResult& result) {
   std::vector<UnallocatedError> errors;
   for (std::size_t p = 0; p < result.factors.size(); ++p) {
     if (members.contains(result.factors[p].name)) continue;
-    errors.push_back({result.factors[p], result.factor_distribution[p], result.factor_sigma[p]});
+    const bool is_per_pose = !result.factor_draws.empty() && result.factor_draws[p] == name(Draws::per_pose);
+    errors.push_back({result.factors[p], result.factor_distribution[p], result.factor_sigma[p], is_per_pose});
   }
   return errors;
 }
@@ -91,7 +105,8 @@ Table in_no_part_table(const std::vector<UnallocatedError>& errors) {
                                      counted(errors.size(), "error,", "errors,"), errors.size() == 1 ? "it" : "them"),
               .columns = {},
               .notes = {"The tolerances were found and certified with these sizes, so the certificate holds only if "
-                        "these errors keep them; a part of [[analysis.parts]] that names them finds their tolerances"}};
+                        "these errors keep them; " +
+                        std::string(remedy_text(errors))}};
   fill(table, positions(errors.size()),
        {{text_column("error", "error"), [&](std::size_t e) { return text_cell(errors[e].named.name); }},
         {text_column("distribution", "distribution"), [&](std::size_t e) { return text_cell(errors[e].distribution); }},

@@ -16,6 +16,7 @@ struct UnallocatedError {
   NamedUnit named;           ///< name and SI unit
   std::string distribution;  ///< name of the distribution: "normal"
   double sigma;              ///< standard deviation, SI
+  bool is_per_pose = false;  ///< true if a machine draws it anew at each pose, so that no part can have it
 };
 
 std::vector<UnallocatedError> errors_in_no_part(const Study& study);          ///< The errors in no part of a study.

@@ -109,6 +109,14 @@ TEST_F(AllocationReport, HasTheYieldAsAMonteCarloStudy) {
   EXPECT_EQ(column(yield, "rejects"), Texts{"360"});
 }
 
+TEST_F(AllocationReport, SaysThatNoPartCanHaveErrorsDrawnAnewAtEachPose) {
+  found().part_members(1) = "delta_2";
+  result.factor_draws = {"per machine", "per pose"};
+  EXPECT_NE(
+      text_of(table("in_no_part"), 300).find("keep them; no part can have them, because a machine draws them anew"),
+      std::string::npos);
+}
+
 TEST_F(AllocationReport, NamesTheErrorsThatAreInNoPart) {
   found().part_members(1) = "delta_2";
   EXPECT_EQ(text_of(table("in_no_part"), 100),
