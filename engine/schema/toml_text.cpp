@@ -54,29 +54,56 @@ void refuse_open_quote(const std::string& text, const std::string& path, const t
                    "close each text with the quote that opens it");
 }
 
-/// Throws InputError if the line where the TOML library noticed a mistake has quotes of a word processor, or a text
-/// without quotes: `select = boundary`.
+/// The part of the file's line from this place on; empty if the file has no such place. The column is counted in
+/// characters.
+std::string_view rest_of_line(const std::vector<std::string_view>& lines, const toml::source_position& from) {
+  if (from.line == 0 || from.line > lines.size()) return {};
+  std::string_view rest = lines[from.line - 1];
+  for (std::size_t column = 1; column < from.column && !rest.empty(); ++column) {
+    rest.remove_prefix(std::max<std::size_t>(character_length(rest), 1));
+  }
+  return rest;
+}
+
+/// The value at this place of a line if it is a word without quotes, as in `select = boundary` or `[gap, x]`; otherwise
+/// empty. rest: part of the line that begins in the word.
+std::string_view bare_word(std::string_view line, std::string_view rest) {
+  const auto is_of_word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+  std::size_t begin = line.size() - rest.size();
+  std::size_t end = begin;
+  while (begin > 0 && is_of_word(line[begin - 1])) --begin;
+  while (end < line.size() && is_of_word(line[end])) ++end;
+  const std::string_view word = line.substr(begin, end - begin);
+  if (word.empty() || std::isalpha(static_cast<unsigned char>(word.front())) == 0) return {};
+  const std::string_view before = trimmed(line.substr(0, begin));
+  const std::string_view after = trimmed(line.substr(end));
+  constexpr std::string_view kBefore = "=[,";
+  constexpr std::string_view kAfter = ",]}#\r";
+  const bool begins = !before.empty() && kBefore.find(before.back()) != std::string_view::npos;
+  const bool ends = after.empty() || kAfter.find(after.front()) != std::string_view::npos;
+  return begins && ends ? word : std::string_view();
+}
+
+/// Throws InputError if the place where the TOML library noticed a mistake has a quote of a word processor, or is in a
+/// text without quotes.
 void refuse_missing_quotes(const std::vector<std::string_view>& lines, const std::string& path,
                            const toml::source_position& noticed) {
   constexpr std::array<std::string_view, 7> kTypographic{"\u201c", "\u201d", "\u201e", "\u2018",
                                                          "\u2019", "\u00ab", "\u00bb"};
-  if (noticed.line == 0 || noticed.line > lines.size()) return;
-  const std::string_view line = lines[noticed.line - 1];
+  const std::string_view rest = rest_of_line(lines, noticed);
+  if (rest.empty()) return;
   const Place place{path, noticed.line, noticed.column};
-  for (const std::string_view mark : kTypographic) {
-    if (line.find(mark) == std::string_view::npos) continue;
-    throw InputError(place, fmt::format("this is not TOML: the line has the typographic quote {}", mark),
+  const auto begins = [&](std::string_view mark) { return rest.starts_with(mark); };
+  if (const auto mark = std::ranges::find_if(kTypographic, begins); mark != kTypographic.end()) {
+    throw InputError(place, fmt::format("this is not TOML: {} is a typographic quote", *mark),
                      "write the plain quote \" before and after a text");
   }
-  const std::size_t equals = line.find('=');
-  if (equals == std::string_view::npos) return;
-  const std::string_view value = trimmed(line.substr(equals + 1));
-  const auto is_of_word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
-  const bool is_word = !value.empty() && std::isalpha(static_cast<unsigned char>(value.front())) != 0 &&
-                       std::ranges::all_of(value, is_of_word) && value != "true" && value != "false";
-  if (!is_word) return;
-  throw InputError(place, fmt::format("this is not TOML: {} is a text without quotes", printable(value)),
-                   fmt::format("write \"{}\"", printable(value)));
+  const std::string_view word = bare_word(lines[noticed.line - 1], rest);
+  if (word.empty()) return;
+  const std::string lower = lower_case(word);
+  const bool is_boolean = lower == "true" || lower == "false";
+  throw InputError(place, fmt::format("this is not TOML: {} is a text without quotes", printable(word)),
+                   is_boolean ? "write " + lower : fmt::format("write \"{}\"", printable(word)));
 }
 
 toml::table parsed(const std::string& text, const std::vector<std::string_view>& lines, const std::string& path,
@@ -97,11 +124,7 @@ toml::table parsed(const std::string& text, const std::vector<std::string_view>&
 /// A number as the file writes it; empty if the number is not found. lines: lines of the file. begin: place of the
 /// number, with the column counted in characters.
 std::string_view written_number(const std::vector<std::string_view>& lines, const toml::source_position& begin) {
-  if (begin.line == 0 || begin.line > lines.size()) return {};
-  std::string_view rest = lines[begin.line - 1];
-  for (std::size_t column = 1; column < begin.column && !rest.empty(); ++column) {
-    rest.remove_prefix(std::max<std::size_t>(character_length(rest), 1));
-  }
+  const std::string_view rest = rest_of_line(lines, begin);
   return rest.substr(0, rest.find_first_not_of("0123456789+-._eE"));
 }
 

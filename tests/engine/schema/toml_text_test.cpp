@@ -73,8 +73,20 @@ TEST(ParseToml, SaysThatALineHasAQuoteTooMany) {
 }
 
 TEST(ParseToml, NamesMissingAndTypographicQuotes) {
-  expect_refused("[poses]\nselect = ^boundary", {"boundary is a text without quotes", "write \"boundary\""});
-  expect_refused("select = ^\u201cboundary\u201d", {"typographic quote \u201c", "write the plain quote"});
+  expect_refused("[poses]\nselect = ^boundary # where", {"boundary is a text without quotes", "write \"boundary\""});
+  expect_refused("list = [\"a\", ^gap]\r\n", {"gap is a text without quotes"});
+  expect_refused("select = ^\u201cboundary\u201d", {"\u201c is a typographic quote", "write the plain quote"});
+  for (const std::string word : {"interior", "normal", "true_ones", "file"}) {
+    EXPECT_NE(test::refusal_of([&] { parsed("a = " + word); }).find(word + " is a text without quotes"),
+              std::string::npos);
+  }
+  EXPECT_NE(test::refusal_of([] { parsed("a = True"); }).find("write true"), std::string::npos);
+}
+
+TEST(ParseToml, KeepsOtherReasonsBesideTypographicQuotes) {
+  for (const std::string text : {"a = \"\u201cb\u201d\" 3", "a = 3,5 # \u201cb\u201d"}) {
+    EXPECT_EQ(test::refusal_of([&] { parsed(text); }).find("typographic"), std::string::npos) << text;
+  }
 }
 
 /// A quote that is open elsewhere explains nothing.
