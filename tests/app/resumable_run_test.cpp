@@ -9,7 +9,7 @@
 namespace poesy::app {
 namespace {
 
-/// A run that is continued took the time of its earlier parts too, as they recorded it.
+/// The times of a resumed run include the times that its checkpoint recorded.
 TEST(ResumableRun, CountsTheTimeOfEarlierParts) {
   constexpr RunTime kBefore{.wall = 1e6, .checkpoints = 1e5};
   const CheckpointIdentity identity{

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks that no line of a run of ctest is longer than 120 characters: ctest pads every line to the longest name.
+"""Checks that no line of the output of ctest is longer than 120 characters. ctest pads all lines to the longest name.
 
 Usage: ctest_lines.py BUILD    (a folder in which all tests are built)
 """

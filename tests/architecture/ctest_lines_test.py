@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Lists tests with long names: ctest_lines.py must find each, and nothing in a list of short ones."""
+"""Lists tests with long names: ctest_lines.py must find each of them, and nothing in a list of short names."""
 
 import unittest
 

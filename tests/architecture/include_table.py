@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Checks every #include in the tree against the table "Who may include whom" of engine/README.md.
 
-Also checks that the table points down only, and that the engine never names a mechanism.
-Prints one line a violation, FILE:LINE: problem; exits 1 when there are any.
+Also checks that each row of the table names only rows above it, and that the engine never names a mechanism.
+Prints each violation on a line, FILE:LINE: problem. Exits with 1 if there are any.
 Usage: include_table.py [ROOT]
 """
 
@@ -15,12 +15,12 @@ from pathlib import Path
 TABLE = "engine/README.md"
 HEADING = "## Who may include whom"
 REGISTRY = "models/registry.cpp"
-READER = "file"  # the folder of models that reads mechanisms from files, and is none itself
+READER = "file"  # the folder of models/ that reads mechanisms from files and is not a mechanism itself
 SCANNED = ("engine", "models", "bench", "tests")
 EVERYTHING = "everything"
 INCLUDE = re.compile(r'^\s*#\s*include\s*(?:<(?P<angle>[^>]+)>|"(?P<quote>[^"]+)")')
 
-# What a header in angle brackets belongs to, by a pattern on its name. The first match counts.
+# The library that a header in angle brackets belongs to, by patterns of its name. The first match counts.
 LIBRARIES = {
     "decompositions": ("Eigen/Cholesky", "Eigen/LU", "Eigen/QR", "Eigen/SVD", "Eigen/Eigenvalues", "Eigen/Dense"),
     "Eigen": ("Eigen/*", "unsupported/Eigen/*"),
@@ -61,7 +61,7 @@ STANDARD = frozenset("""
 @dataclass(frozen=True)
 class Library:
     name: str
-    files: tuple  # patterns on the including file's path inside its room; empty: all files
+    files: tuple  # patterns of the including file's path in its folder; empty: all files
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Positions in results are not computed by hand: an Array or an ArrayView (engine/base/array.h) knows its axes.
+"""Checks that no code computes positions in results by hand: Array and ArrayView (engine/base/array.h) know the axes.
 
-Looks for an index that is a product and a sum, such as `values[r * poses + m]`, in the rooms that hold, store and show
-what a study found. Numerical rooms (stats, random, optimise, linalg, models) work on plain blocks; so do the files below,
-which solve or invert inside a kind.
+Looks for an index that is a product and a sum, such as `values[r * poses + m]`, in the folders of the engine that
+hold, store and show results. Numerical folders (stats, random, optimise, linalg, models) work on plain blocks, and so
+do the files in NUMERICAL, which solve or invert as parts of a kind.
 
     index_arithmetic.py ROOT
 """

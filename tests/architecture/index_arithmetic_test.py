@@ -1,4 +1,4 @@
-"""index_arithmetic.py finds positions that are computed by hand, and nothing else."""
+"""Tests that index_arithmetic.py finds positions that are computed by hand, and nothing else."""
 
 import tempfile
 import unittest

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compiles the kernels for a GPU (nvptx64), number by number, as they are: nothing in them is of the host alone.
+"""Compiles the unchanged kernels for a GPU (nvptx64), with numbers instead of packs: they must not need the host.
 
 Usage: kernels_for_gpu.py ROOT    Exits with 77 if there is no clang++ that knows nvptx64.
 """
@@ -11,7 +11,8 @@ from pathlib import Path
 
 KERNELS = ("models/assembly/kernels.cpp", "models/chain/block_kernels.cpp", "models/three_prs/kernels.cpp")
 SKIPPED = 77
-# Functions that device code has too: the square root, memory and its allocation, and the end of a failed one.
+# External functions that a GPU has too: square root, rounding, memory, allocation, and the throw if an allocation
+# fails.
 OF_A_DEVICE = re.compile(r"sqrt|nearbyint|mem(cpy|move|set)|_Znwm|_ZdlPv\w*|_ZSt\d+__throw_\w+|llvm\..*")
 FUNCTION = re.compile(r"^declare .*?@\"?([\w.]+)", re.MULTILINE)
 STATE = re.compile(r"^@\"?([\w.$]+)\"? = (?:[\w()]+ )*global ", re.MULTILINE)
@@ -32,7 +33,7 @@ def include_folders():
 
 def compiled(root, source, folders):
     """LLVM's text of a kernel compiled for the device, or None; and what the compiler says."""
-    # System headers ask for the host's word size, and for GNU's functions, as on the host.
+    # The system headers are those of the host, so they need the macros of the host's word size and GNU functions.
     done = clang("--target=nvptx64-nvidia-cuda", "-std=c++20", "-O1", "-S", "-emit-llvm", "-o", "-", "-fno-exceptions",
                  "-fno-rtti", "-Wno-pass-failed", "-D_GNU_SOURCE", "-D__x86_64__", "-D__LP64__", f"-I{root}",
                  *(f"-isystem{folder}" for folder in folders), "-DPOESY_KERNEL_ISA=plain", "-DPOESY_KERNEL_OF_NUMBERS",

@@ -1,4 +1,4 @@
-"""What kernels_for_gpu.py reports of LLVM's text."""
+"""Tests what kernels_for_gpu.py reports about LLVM code."""
 
 import unittest
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Checks that a kind of study is known in its own folder and in one row of the registry, and nowhere else.
+"""Checks that only a kind's own folder and its row in the registry know a kind of study.
 
-The kinds are the folders that engine/kinds/registry.cpp includes. Looked for in the code of engine/, without comments:
-- the name of a kind in a room other than engine/kinds: in code, or as a text in quotes of its own. Sentences for people
-  may name one;
+The kinds are the folders that engine/kinds/registry.cpp includes. In the code of engine/, without comments, these are
+violations:
+- the name of a kind outside of engine/kinds, in code or as a quoted text of one word; sentences may name kinds;
 - an include of one kind's folder in another's.
-Words that mean something else as well (WORDS_OF_OTHERS) count only as a text in quotes of their own.
-Prints one line a violation, FILE:LINE: problem; exits 1 when there are any.
+Words that also mean something else (WORDS_OF_OTHERS) count only as quoted texts of one word.
+Prints each violation on a line, FILE:LINE: problem. Exits with 1 if there are any.
 Usage: kind_names.py [ROOT]
 """
 
@@ -15,11 +15,10 @@ import sys
 from pathlib import Path
 
 REGISTRY = "engine/kinds/registry.cpp"
-# What a model does, and the command that solves rows of errors.
-# Sobol' points are a sequence of engine/random.
-# Tolerances at least cost are a part of engine/stats.
-# A table of any study says how machines are calibrated; results of `poesy calibrate` are of a kind that no study has.
-# `poesy sweep` is a command, whose results are of a kind that no study has.
+# Names of kinds that also have another meaning, and the files outside of engine/kinds that may have them as quoted
+# texts. evaluate: what a model does, and the command that solves rows of errors; sobol: a sequence of points in
+# engine/random; allocation: a computation in engine/stats; sweep, calibration: kinds of results of `poesy sweep` and
+# `poesy calibrate`, and a table of any study.
 WORDS_OF_OTHERS = {
     "evaluate": ("engine/app/evaluate.cpp",),
     "sobol": ("engine/random/low_discrepancy.cpp",),

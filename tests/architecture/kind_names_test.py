@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Plants violations in a small tree: kind_names.py must find each, and nothing in the clean tree."""
+"""Plants violations in a small tree: kind_names.py must find each of them, and nothing in the clean tree."""
 
 import tempfile
 import unittest

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Checks the pages that people read: links lead to files and headings that exist, headers that the pages of engine/docs
-name are there, and each decision has a short page of its own that the index lists.
+"""Checks the pages that people read: links lead to files and headings that exist, the headers that the pages of
+engine/docs name exist, and each decision has a short page that the index lists.
 
 Usage: page_links.py ROOT
 """

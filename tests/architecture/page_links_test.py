@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Plants links that lead nowhere and wrong pages of decisions: page_links.py must find each, and nothing in right pages."""
+"""Plants broken links and wrong pages of decisions: page_links.py must find each, and nothing in correct pages."""
 
 import tempfile
 import unittest

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks that the commands in README.md's code exist: poesy's subcommands with their options, presets, scripts.
+"""Checks that the commands in the code blocks of README.md exist: poesy's subcommands and options, presets, scripts.
 
 Usage: readme_commands.py POESY [README]
 """

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Plants commands that do not exist in a README: readme_commands.py must find each, and nothing in a right one.
+"""Plants commands that do not exist in a README: readme_commands.py must find each, and nothing in a correct one.
 
 Usage: readme_commands_test.py POESY
 """

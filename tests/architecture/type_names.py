@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""No two files of the engine and the models define a type of the same full name, unless it is theirs alone.
+"""Checks that no two files of engine/ and models/ define a type with the same full name outside an unnamed namespace.
 
-Two such definitions are one to the linker, which takes the functions of either for both: the program then destroys an
-object as if it were the other one. No compiler sees that, for each sees one file.
+To the linker both definitions are the same type, so it uses the functions of either for both. The program then may
+destroy an object as if it were of the other type. A compiler cannot see this, because it sees one file at a time.
 
     type_names.py ROOT
 """

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Plants a second definition of a type: type_names.py must find it, and nothing where each has a name of its own."""
+"""Plants a second definition of a type: type_names.py must find it, and nothing if all names differ."""
 
 import tempfile
 import unittest

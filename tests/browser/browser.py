@@ -1,4 +1,4 @@
-"""Headless Chromium: opening a page at a width in a colour scheme, and what the browser says about it."""
+"""Headless Chromium: opens a page at a width and a colour scheme, and returns what the browser reports about it."""
 
 import base64
 import json

@@ -1,13 +1,13 @@
-"""What can be asked of the figures of an open page, and what a reader does with them."""
+"""Checks of the figures of an open page, and the actions of a reader: clicks, keys and selects."""
 
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
-MOST_CLICKS = 6  # of the options of one select, and of the checkboxes of one figure
-FEW_CLICKS = 2  # where the same page was worked at another width
+MOST_CLICKS = 6  # the most options of one select, and checkboxes of one figure, that are clicked
+FEW_CLICKS = 2  # the same if the page was already checked at another width
 
-# Figures without a mark that can be seen: a text that says there is nothing is none.
+# Finds figures without a visible mark. A text that says there is nothing to show does not count as a mark.
 EMPTY = """
 const seen = (e) => { const r = e.getBoundingClientRect(); return r.width + r.height > 0; };
 const marks = "g[data-mark=rect], g[data-mark=dot], g[data-mark=line], image, .joint";
@@ -20,7 +20,7 @@ return (arguments[0] ? [arguments[0]] : [...document.querySelectorAll("figure[da
   .map((figure) => figure.dataset.figure);
 """
 
-# SVGs without a role or a sentence, and texts in them that reach out of the page or lie on top of each other.
+# Finds SVGs without a role or a description, and texts in them that extend beyond the page or overlap.
 UNREADABLE = """
 const problems = [];
 const width = document.documentElement.clientWidth;
@@ -99,7 +99,7 @@ class FigureChecks:
 
     def selects(self, figure):
         k = 0
-        while k < len(selects := self.visible(figure, ".controls select")):  # one choice may offer another
+        while k < len(selects := self.visible(figure, ".controls select")):  # an option may show another select
             self.options(figure, selects[k])
             k += 1
 

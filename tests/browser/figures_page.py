@@ -1,6 +1,6 @@
-"""A page like a report's, with a figure of every type, in all its varieties, at the sizes of the largest studies.
+"""Writes a page like that of a report, with all types and varieties of figures, at the sizes of the largest studies.
 
-figures_page.py WEB PAGE.html writes it; WEB is the folder of the build with a report's scripts.
+figures_page.py WEB PAGE.html; WEB is the folder of the build with the scripts of reports.
 """
 
 import base64

@@ -1,6 +1,6 @@
-"""Reports in headless Chromium: drawn, readable, self-contained, usable by keyboard, and faultless to axe-core.
+"""Reports in headless Chromium are drawn, readable, self-contained, usable by keyboard, and without faults by axe-core.
 
-POESY_SCREENSHOTS names a folder for screenshots of every page, and the page as it is printed; without it none is kept.
+POESY_SCREENSHOTS names a folder for screenshots of every page, also as printed. Without it, none are kept.
 """
 
 import os
@@ -27,9 +27,9 @@ ROOT = Path(__file__).resolve().parents[2]
 WEB = Path(os.environ["POESY_WEB"])
 SHOTS = os.environ.get("POESY_SCREENSHOTS")
 WIDTHS = (1400, 400)
-PAPER = 680  # A4 without its margins
+PAPER = 680  # width of A4 without margins (CSS pixels)
 MOST_BYTES = 3_000_000
-MOST_SECONDS = 30  # ten times what is asked for: a busy machine is no reason to fail
+MOST_SECONDS = 30  # ten times the required time, because the machine may be busy
 
 
 class PageTest(unittest.TestCase):
@@ -65,7 +65,7 @@ class PageTest(unittest.TestCase):
         self.assertEqual(self.without_numbers(), [])
         self.assertEqual(self.browser.violations(), [])
         if width == max(WIDTHS):
-            self.browser.set_scheme("dark")  # whose colours are the same at all widths
+            self.browser.set_scheme("dark")  # the colours are the same at all widths
             self.assertEqual(self.browser.violations(browser.COLOUR_RULES), [])
         self.check_silent(page)
         self.take_screenshots(page, width)
@@ -341,7 +341,7 @@ class Figures(PageTest):
         self.assertIn("0.01", ticks)
         self.assertIn("1", ticks)
         self.assertNotIn("0.0", ticks)
-        self.assertEqual(sum(width > 10 for width in widths), 7)  # all but the 0
+        self.assertEqual(sum(width > 10 for width in widths), 7)  # all bars except that of the value 0
         self.assertIn("0.0", linear)
         dots = self.browser.run(
             """return [...document.querySelectorAll("[data-figure=dots] [data-mark=dot] circle")].map((dot) => dot.cy.baseVal.value)""")
@@ -361,7 +361,7 @@ class Figures(PageTest):
         self.assertIn("a shift of the first hole", said)
         self.assertIn("pose 3", said)
         self.assertIn("4", " ".join(legend))
-        self.assertIn("\u22124", " ".join(legend))  # colours meet at 0 although all are negative
+        self.assertIn("\u22124", " ".join(legend))  # symmetric about 0 although all values are negative
 
     def test_the_view_that_can_be_turned_has_numbers_and_is_reset(self):
         self.open(figures_page(WEB, add_small_fields))
@@ -563,7 +563,7 @@ class Reports(ReportTest):
         marked = self.browser.run(
             """return [...document.querySelectorAll("[data-figure^=distribution] svg")].map((svg) =>
               [...svg.querySelectorAll("text")].filter((text) => /^limit [\\d.]+/.test(text.textContent)).length)""")
-        self.assertEqual(sorted(marked), [0, 0, 1, 1, 1, 1])  # two panels of each of three responses, two with a limit
+        self.assertEqual(sorted(marked), [0, 0, 1, 1, 1, 1])  # two panels per response; two of three have a limit
         shaded = self.browser.run(
             "return document.querySelectorAll('[data-figure^=distribution] svg rect[height]').length")
         self.assertEqual(shaded, 4)

@@ -1,4 +1,4 @@
-"""Sliders for sizes in a report: what they predict is what the study finds at those sizes, within the stated error."""
+"""Sliders in a report predict the yield at other sizes of errors: a study finds the same within the stated error."""
 
 import json
 import re
@@ -13,7 +13,7 @@ from selenium.webdriver.common.keys import Keys
 
 TRICEPT = ROOT / "results" / "gallery" / "tricept"
 
-# Factors of the sliders, the most important error first.
+# For each setting, the factor of slider g; slider 0 is the most important error.
 SETTINGS = {
     "all_smaller": lambda g: 0.5,
     "all_larger": lambda g: 1.5,
@@ -40,7 +40,7 @@ class WhatIf(ReportTest):
         text = text.replace('fidelity = "first-order"\n', "").replace("count = 20", "count = 12")
         return self.result(name, text.replace("[analysis]", extra + "[analysis]"))
 
-    of_plain_study = None  # the bytes of its result, once it was run
+    of_plain_study = None  # bytes of the result of plain_study(), after the first run
 
     def plain_study(self):
         """The result at the study's own sizes, which is run once for all tests."""
@@ -78,7 +78,7 @@ class WhatIf(ReportTest):
                 self.assertLessEqual(low - 0.05, found)  # the page rounds to a tenth
                 self.assertLessEqual(found, high + 0.05)
                 self.assertLess(low, high)
-                self.assertGreater(abs(found - study), 0.5)  # or the setting shows nothing
+                self.assertGreater(abs(found - study), 0.5)  # otherwise the setting would test nothing
                 widths.append(high - low)
         self.assertLess(max(widths), 6)
 

@@ -1,11 +1,11 @@
-"""A Slurm of one node on this machine, for the time of a test: munge, controller and node daemon with their own key,
-ports and folder. Nothing of an installed configuration is read, no service is started.
+"""A Slurm with one node on this machine for the duration of a test: munge, controller and node daemon with their own
+key, ports and folder. It reads nothing of an installed configuration and starts no service.
 
     with Slurm() as slurm:
         job = slurm.submit("--array=1-3", "array.sbatch", "study.toml", cwd=folder)
         states = slurm.wait(job)        # {"1_1": ("COMPLETED", 0), ...}
 
-Needs Debian's slurm-wlm and munge, and leave to make a namespace for processes: see enter_namespace.
+Needs Debian's slurm-wlm and munge, and permission to create a process namespace: see enter_namespace.
 """
 
 import collections
@@ -24,7 +24,7 @@ import time
 DAEMONS = ("munged", "slurmctld", "slurmd")
 PATH = os.pathsep.join([os.environ.get("PATH", os.defpath), "/usr/sbin"])
 ENTERED = "POESY_IN_PROCESS_NAMESPACE"
-# When its first process ends, the kernel ends all others: no daemon and no job outlives the test, however it ends.
+# When the first process of the namespace ends, the kernel ends all others, so no daemon or job outlives the test.
 NAMESPACE = ["unshare", *(["--map-current-user"] if os.geteuid() != 0 else []), "--pid", "--fork", "--kill-child",
              "--mount-proc"]
 CPUS = 2
@@ -96,7 +96,7 @@ class Slurm:
 
     def __enter__(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="slurm-"))
-        self.folder.chmod(0o755)  # munged wants its socket to be reachable by all
+        self.folder.chmod(0o755)  # munged requires that everybody can reach its socket
         self.daemons = []
         self.environment = {**os.environ, "PATH": PATH, "SLURM_CONF": str(self.folder / "slurm.conf")}
         try:

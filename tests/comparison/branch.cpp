@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kFirstStep = 1.0 / 64.0;
 constexpr double kSmallestStep = 1e-7;
-/// A root may be this far from the last one (rad, m).
+/// Newton's first step must not exceed this change of a passive displacement (rad, m).
 constexpr double kLargestMove = 0.01;
 constexpr double kRounding = 1e-11;
 constexpr int kNewtonSteps = 10;
@@ -86,7 +86,8 @@ class Follower {
     return with_gradient(poses, columns);
   }
 
-  /// Eqs. 41-43: a joint enters pair (k, i) with + in limb i and - in limb k.
+  /// Du et al. 2022, Eqs. 41-43. In the gradient of pair (k, i), joints of limb i count with +1 and joints of limb k
+  /// with -1.
   Evaluation with_gradient(const std::vector<lie::Transform<double>>& poses,
                            const std::vector<lie::Screw<double>>& columns) const {
     Evaluation at{Eigen::VectorXd(6 * static_cast<Eigen::Index>(chain_.pairs.size())),
@@ -117,7 +118,8 @@ class Follower {
     return m;
   }
 
-  /// The root next to q, if every step is at most half the one before and the derivative stays positive definite.
+  /// The root that Newton finds from `start`. None if a step is more than half the step before it, or if the derivative
+  /// is not positive definite.
   std::optional<Eigen::VectorXd> newton(const Eigen::VectorXd& start) {
     Eigen::VectorXd q = start;
     double last = 2.0 * kLargestMove;
@@ -137,9 +139,9 @@ class Follower {
   const ParallelChain& chain_;
   std::span<const FrameError<double>> errors_;
   const lie::Matrix6<double>& W_;
-  std::vector<double> all_;  ///< displacements of all joints
+  std::vector<double> all_;  ///< displacements of all joints (rad, m)
   std::vector<bool> passive_;
-  Eigen::VectorXd nominal_;  ///< of the passive joints
+  Eigen::VectorXd nominal_;  ///< nominal displacements of the passive joints (rad, m)
   std::vector<lie::Transform<double>> frames_;
 };
 

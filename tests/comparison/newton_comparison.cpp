@@ -2,8 +2,8 @@
 //   newton_comparison [PAIRS = 2000000 [SEED = 1 [THREADS = processors [METRIC = published]]]]
 // Prints the counts and every difference, and exits with 1 when Newton is not as good as it must be. Where Gauss-Newton
 // converges (400 iterations allowed), Newton converges to the same delta_mu to 1e-10 in all but at most
-// - one of 100 000 pairs (one, where there are fewer), METRIC = published;
-// - one of 1 000 000 pairs (likewise), METRIC = platform.
+// - one of 100 000 pairs (rounded up to a whole number of pairs), METRIC = published;
+// - one of 1 000 000 pairs (rounded up in the same way), METRIC = platform.
 // Newton's share of pairs not converged is at most
 // - a fifth of that of Gauss-Newton with 50 iterations, METRIC = published;
 // - one of 10 000, METRIC = platform.
@@ -45,7 +45,7 @@ struct Counts {
   std::uint64_t both = 0;
   std::uint64_t differ = 0;
   std::uint64_t lost = 0;    ///< Gauss-Newton converged, Newton did not
-  std::uint64_t gained = 0;  ///< the other way round
+  std::uint64_t gained = 0;  ///< Newton converged, Gauss-Newton did not
 
   void add(const Counts& other) {
     pairs += other.pairs;
@@ -77,7 +77,7 @@ double distance(const std::array<double, kComponents>& a, std::span<const double
   return largest;
 }
 
-/// A pair worth looking at again.
+/// A pair of pose and sample on which the two methods disagree.
 struct Case {
   std::size_t group;
   std::size_t sample;
@@ -127,7 +127,7 @@ class GroupSolver {
 };
 
 void judge(const Case& pair, Counts& counts, Findings& findings) {
-  // No method solves what cannot be assembled.
+  // A sample that cannot be assembled says nothing about the methods, so it is not counted.
   constexpr SolveStatus kImpossible = SolveStatus::not_assembled;
   if (pair.gauss_newton.status == kImpossible && pair.newton.status == kImpossible) return;
   const bool published_solved = solved(pair.gauss_newton.status);
@@ -150,7 +150,7 @@ void judge(const Case& pair, Counts& counts, Findings& findings) {
   }
 }
 
-/// Takes groups until none is left.
+/// The work of one thread: takes the next group from the common counter `next` until all groups are taken.
 Findings work(const Model& model, const PairSource& source, std::size_t groups, std::atomic<std::size_t>& next) {
   Findings findings;
   GroupSolver gauss_newton(model, published(kLongCap));
@@ -167,7 +167,7 @@ Findings work(const Model& model, const PairSource& source, std::size_t groups, 
   return findings;
 }
 
-/// The same for any number of threads: cases are put in the order of the groups.
+/// The findings do not depend on the number of threads, because the cases are sorted by group and sample.
 Findings compare(const Model& model, const PairSource& source, std::size_t groups, std::size_t threads) {
   std::atomic<std::size_t> next{0};
   std::vector<Findings> parts(threads);
@@ -190,7 +190,7 @@ Findings compare(const Model& model, const PairSource& source, std::size_t group
   return all;
 }
 
-/// W at these displacements, or 1.
+/// The metric W: the platform metric at the displacements q, or the identity for the published metric.
 lie::Matrix6<double> weight(const chain::ParallelChain& chain, std::span<const double> q, bool by_platform) {
   if (!by_platform) return lie::Matrix6<double>::Identity();
   return chain::platform_metric(chain, two_upr_rpu::platform_joints({}), q).W;
@@ -246,7 +246,8 @@ void list_differences(const Model& model, const PairSource& source, const std::v
   }
 }
 
-/// What became of the branch from zero error in some of these cases, evenly chosen.
+/// Follows the branch from zero error in up to kFollowed of the cases, evenly chosen, and prints how often `root` of a
+/// case lies on it.
 void follow(const Model& model, const PairSource& source, const std::vector<Case>& cases, const char* what,
             Root Case::*root) {
   if (cases.empty()) return;
@@ -295,7 +296,7 @@ void print_counts(const Findings& found, const Counts& total) {
   print_row("Newton alone converged", &Counts::gained, found, total);
 }
 
-/// Whether Newton's share of pairs not converged is small enough, and prints it.
+/// Prints the share of pairs on which Newton did not converge. True if it is small enough.
 bool converges_often(const Counts& total, bool by_platform) {
   const double newton = 1.0 - share(total.newton, total.pairs);
   const double gauss_newton = 1.0 - share(total.gauss_newton_50, total.pairs);

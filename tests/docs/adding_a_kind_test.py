@@ -1,4 +1,4 @@
-"""The kind of study of engine/docs/adding-a-kind.md: the page quotes its files, and its program does what the page says."""
+"""Tests the example of engine/docs/adding-a-kind.md: the page quotes its files, and its program works as described."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""Doxygen makes the reference of the libraries without a warning, and would warn of what has no comment."""
+"""Doxygen writes the reference of the libraries without a warning, and warns about public members without a comment."""
 
 import shutil
 import subprocess

@@ -1,4 +1,4 @@
-"""The documentation as a site: no link is broken, every page can be reached, the search knows every page, nothing is fetched."""
+"""The site of the documentation: links work, all pages can be reached and are in the search, nothing is fetched."""
 
 import html.parser
 import importlib.util
@@ -94,7 +94,8 @@ class Site(unittest.TestCase):
 
     def test_every_page_can_be_reached(self):
         lost = set(self.pages) - reached(self.pages, menu_of_doxygen(self.site))
-        # Doxygen makes a page for each letter or kind of member, and for graphs and folders, whether or not it links to it.
+        # Doxygen also makes pages that it does not link to: for letters and kinds of members, graphs and folders. So
+        # only pages outside of library/ and those of classes and structs must be reached.
         self.assertEqual({place for place in lost if not place.startswith("library/")}, set())
         self.assertEqual({place for place in lost if re.match(r"library/(class|struct)poesy.*(?<!-members)\.html", place)}, set())
 

@@ -1,5 +1,6 @@
-// A checkpoint without the digest at its end, which is put there: else nothing but the digest would be tried. A small
-// study, which the seed in the checkpoint chooses, takes its states up, gives them back and continues from them.
+// Fuzzes checkpoints. The input has no digest; the target appends it, because otherwise nearly all inputs would fail at
+// the digest. The seed in the checkpoint selects a small study, which restores the states, stores them again and
+// continues from them.
 #include <atomic>
 #include <utility>
 #include <vector>
@@ -19,8 +20,8 @@ namespace {
 using namespace poesy;
 using State = std::span<const std::byte>;
 
-/// Continues the study from these states, to its end or, with `stop`, until it first looks whether to stop. Gives its
-/// states then.
+/// Continues the study from these states to its end, or with `stop` until it first checks whether to stop. Returns its
+/// states.
 std::vector<Bytes> continued(const test::SmallStudy& small, std::vector<Bytes> states, bool stop) {
   Checkpoints checkpoints([] { return false; }, [](std::span<const ByteSource>) {}, std::move(states));
   const std::atomic<bool> stopped{stop};
@@ -35,7 +36,7 @@ void take_up(const test::SmallStudy& small, const std::vector<Bytes>& states) {
     fuzz::expect(continued(small, given, true) == given, "a state that was taken up is given back");
     static_cast<void>(continued(small, given, false));
   } catch (const InputError&) {
-    // At these numbers no tolerances keep the limits.
+    // With the changed numbers no tolerances keep the limits.
   }
 }
 

@@ -1,4 +1,4 @@
-// A table of errors, for every mechanism.
+// Fuzzes tables of errors, which are read for every mechanism.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -15,7 +15,7 @@ namespace {
 
 using namespace poesy;
 
-/// All mechanisms, with the geometry they have unless a study says otherwise.
+/// All built-in mechanisms, with their published geometry.
 const std::vector<std::unique_ptr<Model>>& models() {
   static const auto all = [] {
     std::vector<std::unique_ptr<Model>> list;

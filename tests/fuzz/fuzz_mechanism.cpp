@@ -1,5 +1,5 @@
-// A mechanism's file. What is accepted is drawn; in one of 16 cases, because it takes a hundred times as long, it is
-// also followed through its workspace and described, and its model is built.
+// Fuzzes mechanism files. An accepted mechanism is drawn. One of 16 is also followed through its workspace and
+// described, and its model is built, which takes a hundred times as long.
 #include <algorithm>
 #include <memory>
 #include <numeric>
@@ -17,7 +17,7 @@ namespace {
 
 using namespace poesy;
 
-/// Without the user's names, any of which may contain "nan".
+/// The sketch without the user's names, which may contain "nan".
 Sketch without_names(Sketch sketch) {
   for (auto& limb : sketch.limbs) {
     for (SketchedJoint& joint : limb) joint.name.clear();

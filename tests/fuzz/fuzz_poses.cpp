@@ -1,4 +1,4 @@
-// A table of poses, of points over time, and of what was measured of a machine, for every mechanism.
+// Fuzzes tables of poses, of trajectories and of measured machines, which are read for every mechanism.
 #include <algorithm>
 #include <cmath>
 

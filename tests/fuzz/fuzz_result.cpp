@@ -1,6 +1,6 @@
-// A result file, or a shard of one. What reads is printed, reported and exported, and nothing but itself is read. A
-// crash or a hang of HDF5 in the child that reads first (engine/storage/poesy_file.h) is no finding; one in this
-// process is.
+// Fuzzes result files and shards. A result that can be read is printed, reported and exported; no other file may be
+// read. A crash or a hang of HDF5 in the child process that reads first (engine/storage/poesy_file.h) is allowed, but
+// not in this process.
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -25,13 +25,13 @@ namespace {
 
 using namespace poesy;
 
-/// Where tables are written: one folder for all inputs.
+/// The folder for exported tables, the same for all inputs.
 const test::TempFolder& folder() {
   static const test::TempFolder only;
   return only;
 }
 
-/// No child may take longer than the fuzzer lets an input take.
+/// Limits the CPU time of child processes to less than the fuzzer allows for an input.
 void limit_children() {
   pthread_atfork(nullptr, nullptr, [] {
     constexpr rlim_t kSeconds = 2;

@@ -1,4 +1,5 @@
-// A study file. What is accepted must come back from its resolved text, and its mechanism is built or refused.
+// Fuzzes study files. An accepted study must be the same after its resolved text is read again. Its mechanism is built
+// or refused.
 #include <memory>
 
 #include "engine/base/error.h"
@@ -10,7 +11,7 @@ namespace {
 
 using namespace poesy;
 
-// Beside it lie poses.csv and curve.csv.
+// Its folder has poses.csv and curve.csv.
 constexpr const char* kPath = POESY_FUZZ_FILES "/study.toml";
 
 void check_resolved(const Study& study) {
@@ -33,7 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
       fuzz::accepted<InputError>([&] { read(text, use); });
     } catch (const FileError&) {
-      // A file that the study names.
+      // The study names a file that cannot be read.
     }
   }
   return 0;

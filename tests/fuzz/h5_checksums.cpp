@@ -4,7 +4,7 @@
 #include <array>
 #include <span>
 
-// HDF5's own: Jenkins' lookup3. In its library, but in no header.
+// HDF5's checksum (Jenkins' lookup3). The library has it, but no public header declares it.
 extern "C" std::uint32_t H5_checksum_metadata(const void* data, std::size_t length, std::uint32_t start);
 
 namespace poesy::fuzz {
@@ -15,20 +15,20 @@ using Bytes = std::span<std::uint8_t>;
 constexpr std::size_t kSignature = 4;
 constexpr std::size_t kChecksum = 4;
 
-/// A little-endian number of `width` bytes. Precondition: it lies inside.
+/// The little-endian number of `width` bytes at `at`. Precondition: it is inside `bytes`.
 std::uint64_t number(Bytes bytes, std::size_t at, std::size_t width) {
   std::uint64_t value = 0;
   for (std::size_t k = width; k-- > 0;) value = value << 8U | bytes[at + k];
   return value;
 }
 
-/// Puts the checksum behind the first `length` bytes of a block.
+/// Writes the checksum of the first `length` bytes of a block after these bytes.
 void seal(Bytes block, std::size_t length) {
   const std::uint32_t sum = H5_checksum_metadata(block.data(), length, 0);
   for (std::size_t k = 0; k < kChecksum; ++k) block[length + k] = static_cast<std::uint8_t>(sum >> (8U * k));
 }
 
-/// Seals the continuations that the messages of a header point to.
+/// Writes the checksums of the continuation blocks to which the messages of a header point.
 void seal_continuations(Bytes file, Bytes messages, bool ordered) {
   constexpr std::uint8_t kContinuation = 0x10;
   const std::size_t prefix = ordered ? 6 : 4;
@@ -46,7 +46,7 @@ void seal_continuations(Bytes file, Bytes messages, bool ordered) {
   }
 }
 
-/// Seals the object header that begins with the file's byte `at`.
+/// Writes the checksums of the object header that begins at byte `at` of the file.
 void seal_header(Bytes file, std::size_t at) {
   const Bytes header = file.subspan(at);
   constexpr std::size_t kFixed = kSignature + 2;

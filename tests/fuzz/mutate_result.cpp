@@ -1,6 +1,6 @@
-// How libFuzzer changes a result file: by bytes, or by parts. Changed parts have what poesy never writes: values or
-// links in other files, cycles, other types, shapes, filters and places. Handles of HDF5 are never closed: the child
-// that has them ends.
+// The mutator of result files for libFuzzer. It changes bytes, or replaces parts by something that poesy never writes:
+// values or links in other files, cycles, other types, shapes, filters and places. HDF5 handles are never closed,
+// because the child process that has them ends.
 #include <fcntl.h>
 #include <hdf5.h>
 #include <sys/resource.h>
@@ -112,7 +112,8 @@ hid_t strange_type(Random& random) {
   }
 }
 
-/// Where the values of a dataset are: outside, elsewhere, in pieces, or as usual.
+/// Creation properties for the storage of a dataset: in an external file, in another dataset, in filtered chunks, or as
+/// usual.
 hid_t strange_storage(hid_t space, const Shape& shape, Random& random) {
   const hid_t storage = H5Pcreate(H5P_DATASET_CREATE);
   const Shape piece(shape.size(), 1 + random() % 3);
@@ -195,7 +196,7 @@ void limit(int resource, rlim_t most) {
   ::setrlimit(resource, &limits);
 }
 
-/// In a child, because HDF5 may crash or hang on a file that is damaged.
+/// Changes the file and ends the process. It runs in a child process, because HDF5 may crash or hang on a damaged file.
 [[noreturn]] void live_as_child(const std::string& path, std::uint32_t seed) {
   const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   ::dup2(nothing, STDERR_FILENO);
@@ -208,7 +209,7 @@ void limit(int resource, rlim_t most) {
   ::_exit(H5Fflush(file, H5F_SCOPE_GLOBAL) < 0 ? 1 : 0);
 }
 
-/// Nothing when HDF5 cannot change the file, for example because it is damaged.
+/// The file with one part replaced. None if HDF5 cannot change the file, for example because it is damaged.
 std::optional<std::vector<char>> with_strange_part(std::span<const std::uint8_t> file, std::uint32_t seed) {
   const MemoryFile changed(file);
   const pid_t child = ::fork();

@@ -6,8 +6,8 @@
 
 namespace poesy::fuzz {
 
-/// A file of this process in a folder of its own, which changed results name in every way that HDF5 knows
-/// (mutate_result.cpp), and that no reader may read (fuzz_result.cpp).
+/// A file in a separate folder that no reader may read (fuzz_result.cpp). Changed results refer to it in every way that
+/// HDF5 knows (mutate_result.cpp).
 class OtherFile {
  public:
   OtherFile();
@@ -15,8 +15,8 @@ class OtherFile {
   OtherFile& operator=(const OtherFile&) = delete;
   ~OtherFile();
   const std::string& path() const { return path_; }
-  /// Whether it was read since this was asked last, by this process or another. No where the system watches no files,
-  /// which is said once.
+  /// Whether any process has read the file since the last call. Always false if the system cannot watch files, which
+  /// the constructor reports.
   bool was_read() const;
 
  private:
@@ -25,6 +25,6 @@ class OtherFile {
   int events_ = -1;
 };
 
-const OtherFile& other_file();  ///< The only one, made when first asked for.
+const OtherFile& other_file();  ///< The only OtherFile, created at the first call.
 
 }  // namespace poesy::fuzz

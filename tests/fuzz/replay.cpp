@@ -1,6 +1,6 @@
-// Runs a fuzz target over the files of the folders on the command line. A seed must be accepted, because a fuzzer
-// hardly gets past the check that refuses its seeds. Every file in a folder `corpus` is a seed, except found_*, which a
-// fuzzer found, and refused_*, which are meant to be refused.
+// Runs a fuzz target over the files in the folders on the command line. Every file in a folder `corpus` is a seed and
+// must be accepted, except found_* (found by a fuzzer) and refused_* (meant to be refused). A fuzzer hardly gets past a
+// check that refuses its seeds.
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -19,11 +19,11 @@ bool is_seed(const std::filesystem::path& path) {
 
 void run(const std::filesystem::path& path) {
   std::printf("%s\n", path.c_str());
-  std::fflush(stdout);  // the last line names the file that the program died of
+  std::fflush(stdout);  // if the program dies, the last line names the file
   std::ifstream file(path, std::ios::binary);
   const std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   const std::vector<std::uint8_t> input(bytes.begin(),
-                                        bytes.end());  // of this size exactly: no byte may be read beyond
+                                        bytes.end());  // exact size, so that reading beyond it is noticed
   const std::size_t before = poesy::fuzz::accepted_reads;
   LLVMFuzzerTestOneInput(input.data(), input.size());
   poesy::fuzz::expect(!is_seed(path) || poesy::fuzz::accepted_reads > before, "a seed is accepted");

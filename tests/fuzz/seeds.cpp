@@ -1,5 +1,5 @@
-// Writes a result file of each kind, and checkpoints without their digests, into FOLDER/result and FOLDER/checkpoint:
-// where the fuzzers of binary formats begin.
+// Writes the seeds for the fuzzers of binary formats: a result file of each kind into FOLDER/result, and checkpoints
+// without digests into FOLDER/checkpoint.
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -21,7 +21,7 @@ namespace {
 
 using namespace poesy;
 
-// A mechanism that has all that a result can speak of.
+// A mechanism with everything that a result can contain.
 const Catalog& catalog() {
   static const Catalog all = [] {
     Catalog list = test::fake_catalog();
@@ -110,7 +110,7 @@ void write_results(const std::string& folder) {
   write_shard_seed(folder + "/shard");
 }
 
-/// Without the digest, which the fuzzer adds. seed: the position of its study among the small ones.
+/// Writes a checkpoint without its digest, which the fuzz target appends. seed: index of the study in small_studies().
 void write_checkpoint(const std::string& path, std::uint64_t seed, std::span<const Bytes> stages) {
   const CheckpointIdentity identity{.poesy_version = "0.2.0",
                                     .git_commit = "abc",
@@ -128,7 +128,7 @@ void write_checkpoint(const std::string& path, std::uint64_t seed, std::span<con
       .write(reinterpret_cast<const char*>(file.data()), static_cast<std::streamsize>(file.size()));
 }
 
-/// Of each study one in the middle and one at the end of the run.
+/// Writes two checkpoints for each small study: from the middle and from the end of its run.
 void write_checkpoints(const std::string& folder) {
   const std::span<const test::SmallStudy> studies = test::small_studies();
   for (std::size_t k = 0; k < studies.size(); ++k) {

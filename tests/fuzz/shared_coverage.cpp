@@ -10,8 +10,8 @@
 
 #include "tests/fuzz/target.h"
 
-// Bounds of the counters of -fsanitize=fuzzer, which the linker knows; and the sanitizers' call at death. All are
-// absent from a build without a fuzzer.
+// The bounds of the coverage counters of -fsanitize=fuzzer, defined by the linker, and the sanitizers' callback at a
+// crash. A build without a fuzzer has none of them.
 extern "C" {
 [[gnu::weak]] extern std::uint8_t __start___sancov_cntrs[];
 [[gnu::weak]] extern std::uint8_t __stop___sancov_cntrs[];
@@ -21,7 +21,7 @@ extern "C" {
 namespace poesy::fuzz {
 namespace {
 
-/// Replaces the pages that lie between the bounds by such as children share, with the same content.
+/// Replaces the whole pages between the bounds by pages that are shared with child processes, with the same content.
 void share_pages(std::uint8_t* begin, std::uint8_t* end) {
   const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
   const std::uintptr_t first = (reinterpret_cast<std::uintptr_t>(begin) + page - 1) / page * page;

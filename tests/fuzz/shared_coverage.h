@@ -2,8 +2,8 @@
 
 namespace poesy::fuzz {
 
-/// Lets the fuzzer see what a child of this process covers, and keeps a child that dies from reporting a finding.
-/// Does nothing where there is no fuzzer. To be called once, before the first child.
+/// Lets the fuzzer see the coverage of child processes, and prevents a child that crashes from being reported as a
+/// finding. Does nothing in a build without a fuzzer. Must be called once, before the first child process.
 void share_coverage();
 
 }  // namespace poesy::fuzz

@@ -10,13 +10,14 @@
 #include <stdexcept>
 #include <string>
 
-/// What a fuzz target is: a function that takes any bytes and never crashes, leaks or hangs. Linked with libFuzzer it
-/// is a fuzzer, linked with replay.cpp a test over the files of corpus/ and crashes/.
+/// The fuzz target: a function that accepts any bytes and must never crash, leak or hang. Linked with libFuzzer it is a
+/// fuzzer; linked with replay.cpp it is a test over the files in corpus/ and crashes/.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace poesy::fuzz {
 
-/// A file on a disk in memory, there as long as this object. (HDF5 wants a real path, which memfd_create gives not.)
+/// A file in memory (/dev/shm) that exists as long as this object. (HDF5 needs a real path, which memfd_create does not
+/// give.)
 class MemoryFile {
  public:
   explicit MemoryFile(std::span<const std::uint8_t> bytes) : descriptor_(::mkstemp(path_.data())) {
@@ -41,17 +42,17 @@ class MemoryFile {
   int descriptor_;
 };
 
-/// Ends the program, which makes the input a finding, unless the condition holds.
+/// Aborts the program unless the condition holds, so that the fuzzer reports the input.
 inline void expect(bool condition, const char* what) {
   if (condition) return;
   std::fprintf(stderr, "broken expectation: %s\n", what);
   std::abort();
 }
 
-/// Number of accepted reads, over all inputs so far.
+/// Number of accepted reads over all inputs.
 inline std::size_t accepted_reads = 0;
 
-/// Whether read() gives something rather than an Error.
+/// Whether read() returns without throwing an Error.
 template <class Error, class Read>
 bool accepted(const Read& read) {
   try {

@@ -1,4 +1,4 @@
-"""Checks any poesy result file with h5py and xarray alone: units, descriptions, named axes, content hash.
+"""Checks any result file of poesy with h5py and xarray only: units, descriptions, named axes, content hash.
 
 usage: check_structure.py RESULT.h5
 """

@@ -1,4 +1,5 @@
-"""Checks that every exported table of a folder is plain CSV: one header, equal rows, numbers but for the first column, units and words.
+"""Checks that all exported tables of a folder are plain CSV: one header, rows of equal length, numbers except for the
+first column, units and words.
 
 usage: check_tables.py FOLDER
 """
@@ -10,7 +11,7 @@ import sys
 
 UNITS = {"per m", "per rad", "m", "rad", "1"}
 NO_NUMBERS = {"NaN", "inf", "-inf"}
-WORDS = {"chosen", "errors"}  # of parts of an allocation
+WORDS = {"chosen", "errors"}  # columns with words, in tables of the parts of an allocation
 
 
 def is_right(name, cell):

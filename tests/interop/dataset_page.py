@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Makes the page of all datasets of results from result files, or holds the page against them.
+"""Makes the page of all datasets of results from result files, or checks that the page is up to date.
 
-usage: dataset_page.py PAGE FOLDER POESY            fails unless the page is what the results say: those in the folder, and
+usage: dataset_page.py PAGE FOLDER POESY            fails unless the page agrees with the results in the folder and with
                                                     those of small studies that the program POESY runs
        dataset_page.py --write PAGE FOLDER POESY    writes the page
 """
@@ -24,7 +24,7 @@ coordinate of a pose, RESPONSE of a response, DETAIL of a detail of a mechanism.
 """
 REPOSITORY = Path(__file__).resolve().parents[2]
 BEGIN = 'format = "poesy-study"\nversion = 1\n'
-# Studies with groups that the examples do not have.
+# Studies whose results have groups that the examples do not have.
 STUDIES = {
     "two_fidelities": """
 mechanism = { model = "3-prs", fidelity = "both" }
@@ -148,7 +148,7 @@ def datasets(group):
     for thing in group.values():
         if isinstance(thing, h5py.Group):
             yield from datasets(thing)
-        elif group.name == "/" or not is_scale(thing):  # groups have copies of the axes at the root
+        elif group.name == "/" or not is_scale(thing):  # other groups have copies of the root's axes
             yield thing.name.lstrip("/")
 
 

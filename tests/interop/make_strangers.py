@@ -1,4 +1,4 @@
-"""Writes files that are no results, or of another version, beside the examples.
+"""Writes files that are not results, or are results of other versions, next to the examples.
 
 usage: make_strangers.py EXAMPLES
 """

@@ -1,6 +1,6 @@
-"""results/read_results.py: numbers of the file and of the exported tables, order of `poesy show`, figures, errors.
+"""Tests results/read_results.py: numbers of the file and of exported tables, order of `poesy show`, figures, errors.
 
-usage: read_results_test.py POESY EXAMPLES; EXAMPLES is where write_examples wrote
+usage: read_results_test.py POESY EXAMPLES; EXAMPLES is the folder to which write_examples wrote
 """
 
 import contextlib
@@ -99,7 +99,7 @@ class Examples(unittest.TestCase):
                 drawn = path.read_bytes()
                 self.assertTrue(drawn.startswith(start))
                 self.assertGreater(len(drawn), 5000)
-            self.assertIn(b"epsilon_1", (Path(folder) / "ranked.svg").read_bytes())  # a comment names each text
+            self.assertIn(b"epsilon_1", (Path(folder) / "ranked.svg").read_bytes())  # in the comment of an outline
 
     def test_what_is_refused(self):
         cases = {

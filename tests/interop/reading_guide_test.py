@@ -1,4 +1,4 @@
-"""The lines of code in results/README.md run on a result of the program; those for MATLAB in Octave, see interop/matlab.
+"""The code in results/README.md runs on a result of the program. That for MATLAB runs in Octave, see interop/matlab.
 
 usage: reading_guide_test.py POESY OCTAVE
 """
@@ -13,7 +13,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 POESY, OCTAVE = sys.argv[1:3]
-# Where there is no display, a figure is made but not shown.
+# Figures are drawn but not shown, because there may be no display.
 OCTAVE_START = f"warning('off', 'all'); set(0, 'defaultfigurevisible', 'off'); addpath('{ROOT}/results'); "
 MATLAB_START = f"addpath('{ROOT}/tests/interop/matlab'); "
 

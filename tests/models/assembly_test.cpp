@@ -1,5 +1,5 @@
-// Machines that cannot be assembled: solvers of blocks against the plain reference and against closed forms, and no
-// false alarm. tests/program/assembly_test.py has more mechanisms, against kinematics of their own.
+// Tests which machines cannot be assembled: block solvers compared with the plain reference and with closed forms, and
+// no false alarms. tests/program/assembly_test.py compares more mechanisms with separate kinematics.
 
 #include <gtest/gtest.h>
 
@@ -41,14 +41,14 @@ SolverOptions options_of(const Model& model, SolverOptions::Method method = Solv
   return {.method = method, .tolerance = model.description().tolerance};
 }
 
-/// Some errors varied together, the others zero.
+/// Samples in which some errors vary together; the other errors are zero.
 struct Samples {
   std::vector<double> pose;
   std::vector<FactorIndex> varied;
   std::vector<double> values;  ///< [varied x count]
   std::size_t count = 0;
 
-  /// All errors [F] of one sample.
+  /// [errors] All errors of one sample (SI).
   std::vector<double> errors(const Model& model, std::size_t sample) const {
     std::vector<double> all(model.description().factors.size(), 0.0);
     for (std::size_t v = 0; v < varied.size(); ++v) all[varied[v].value] = values[v * count + sample];
@@ -56,7 +56,7 @@ struct Samples {
   }
 };
 
-/// Normal errors of a set, with standard deviations for lengths (m) and angles (rad).
+/// Samples of a set of errors with normal values. length (m), angle (rad): standard deviations.
 Samples drawn(const Model& model, std::vector<double> pose, const std::string& set, double length, double angle,
               std::size_t count, std::mt19937_64& engine) {
   Samples samples{std::move(pose), model.description().find_set(set)->factors, {}, count};
@@ -101,7 +101,8 @@ TEST_P(OfEveryKernel, AreThoseOfTheReference) {
       const bool as_published = metric == std::string("published");
       if (!one.is_over_constrained && as_published) continue;
       for (const auto method : {newton, gauss_newton}) {
-        // As published, the reference does not come to rest where limbs are far apart, and Newton does.
+        // With the published metric the reference does not converge if the limbs are far apart, but Newton does. So
+        // only errors in the plane are compared.
         const char* set = as_published && method == newton ? "plane" : "all";
         const Samples samples = drawn(*model, one.pose, set, one.length, one.length / 0.1, 203, engine);
         const SolverOptions options = options_of(*model, method);
@@ -112,7 +113,7 @@ TEST_P(OfEveryKernel, AreThoseOfTheReference) {
           different += is_impossible(found[b]) == is_impossible(reference.status) ? 0 : 1;
           impossible += is_impossible(found[b]) ? 1 : 0;
         }
-        // Where errors out of the plane blur the border, Newton may rest beside Gauss-Newton.
+        // With errors out of the plane, Newton and Gauss-Newton may differ for machines near the border.
         const bool may_differ = one.is_over_constrained && method == newton && set == std::string("all");
         EXPECT_LE(different, may_differ ? samples.count / 100 : 0) << one.file << ' ' << metric;
         EXPECT_GT(impossible, 5u) << one.file << ' ' << metric;
@@ -134,7 +135,7 @@ TEST_P(OfEveryKernel, AreTheSameAloneAsInABlock) {
   }
 }
 
-/// With starts from a fit over a range that holds both kinds.
+/// Tests predicted starts over a range with machines that can and machines that cannot be assembled.
 TEST_P(OfEveryKernel, AreFoundWhereOneErrorVaries) {
   const double spare = 2.0 * std::hypot(0.08, 0.002) - 0.16;
   for (const char* metric : {"platform", "published"}) {
@@ -149,7 +150,7 @@ TEST_P(OfEveryKernel, AreFoundWhereOneErrorVaries) {
   }
 }
 
-/// The legs of limbs 1 and 2, nearly flat, no longer reach from the base to the platform.
+/// The legs of limbs 1 and 2 are nearly flat. If they are too short, they do not reach from the base to the platform.
 TEST_P(OfEveryKernel, AreFoundInTheBuiltInMechanism) {
   constexpr double kApart = 0.15 - 0.06;  // l_B - l_A
   constexpr double kHeight = 0.005;
@@ -168,7 +169,7 @@ TEST_P(OfEveryKernel, AreFoundInTheBuiltInMechanism) {
   }
 }
 
-/// Rods that no longer reach from their carriages to the platform, which stays level.
+/// The rods of all limbs are too short by the same length to reach from the carriages to the level platform.
 TEST_P(OfEveryKernel, AreFoundInTheBuiltInThreePrs) {
   constexpr double kApart = 0.25 - 0.135;  // a - c
   constexpr double kRod = 0.1155;
@@ -206,7 +207,7 @@ std::vector<double> random_pose(const Model& model, std::mt19937_64& engine) {
   return pose;
 }
 
-/// No sample at `poses` reachable random poses is not assembled.
+/// Expects that at `poses` reachable random poses no sample counts as impossible to assemble.
 void expect_no_alarm(const Model& model, const std::string& set, double length, double angle, std::size_t poses,
                      std::size_t count, std::mt19937_64& engine) {
   for (std::size_t n = 0; n < poses;) {

@@ -18,7 +18,7 @@
 namespace poesy {
 namespace {
 
-/// A mechanism by one of its metrics, at one of its fidelities.
+/// A mechanism with one of its metrics (the entry) and one of its fidelities.
 struct Choice {
   const CatalogEntry* entry;
   std::size_t fidelity;
@@ -41,13 +41,13 @@ std::vector<Choice> choices() {
 
 std::string name_of(const testing::TestParamInfo<Choice>& info) {
   const ModelDescription& model = info.param.entry->description;
-  const std::string by = model.metric == "platform" ? "_w_" : "_";  // W, the metric's weights
+  const std::string by = model.metric == "platform" ? "_w_" : "_";  // w: the platform metric W
   std::string name = model.name + by + std::to_string(info.param.fidelity);
   std::ranges::replace(name, '-', '_');
   return name;
 }
 
-/// What every mechanism of the registry promises, whatever it is (models/README.md).
+/// Tests what every mechanism of the registry must satisfy (models/README.md).
 class EveryMechanism : public testing::TestWithParam<Choice> {
  protected:
   static const ModelDescription& description() { return GetParam().entry->description; }
@@ -60,7 +60,7 @@ class EveryMechanism : public testing::TestWithParam<Choice> {
 
   const std::unique_ptr<Model> model_ = GetParam().entry->build(published(), GetParam().fidelity);
 
-  /// Reachable poses inside the description's workspace, drawn with a fixed seed: at least three of four.
+  /// Reachable random poses in the described workspace. At least three of four drawn poses must be reachable.
   std::vector<std::vector<double>> poses() const {
     std::mt19937_64 random(20260101);
     std::vector<std::vector<double>> reachable;
@@ -77,12 +77,12 @@ class EveryMechanism : public testing::TestWithParam<Choice> {
   }
 };
 
-/// What a block gives.
+/// The outcomes of a block of samples.
 struct Outcomes {
-  std::vector<double> responses;  ///< [R x B]
+  std::vector<double> responses;  ///< [responses x samples]
   std::vector<SolveStatus> status;
   std::vector<std::uint32_t> iterations;
-  std::vector<double> details;  ///< [components of all details x B]
+  std::vector<double> details;  ///< [components of all details x samples]
 };
 
 Outcomes solve(Evaluator& evaluator, const ModelDescription& model, std::span<const double> pose,
@@ -100,7 +100,7 @@ Outcomes solve(Evaluator& evaluator, const ModelDescription& model, std::span<co
   return found;
 }
 
-/// Names stand in study files, tables and on the command line without quotes.
+/// Expects different names that can be written without quotes in study files, tables and on the command line.
 void expect_plain_and_different(const std::vector<std::string>& names) {
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
   for (const std::string& name : names) {
@@ -127,14 +127,14 @@ TEST_P(EveryMechanism, NamesThingsOnce) {
   expect_plain_and_different(names_of(model.joints));
   expect_plain_and_different(names_of(model.charts));
   expect_plain_and_different(names_of(model.curves));
-  // A case of errors names factors and sets side by side, and linear and angular besides.
+  // A case of errors may name errors, sets, linear and angular, so all these names must differ.
   std::vector<std::string> of_errors = names_of(model.factors);
   for (const std::string& set : names_of(model.factor_sets)) of_errors.push_back(set);
   of_errors.insert(of_errors.end(), {"linear", "angular"});
   expect_plain_and_different(of_errors);
 }
 
-/// Sentences for people: each its own, in words and not in names, for names have underscores.
+/// Expects descriptions that are all different and consist of at least three words, without underscores as in names.
 template <class Described>
 void expect_words(const std::vector<Described>& things) {
   std::set<std::string> different;
@@ -149,7 +149,7 @@ TEST_P(EveryMechanism, DescribesWhatItHas) {
   expect_words(description().factors);
   expect_words(description().responses);
   for (const Factor& factor : description().factors) {
-    // Which way it acts: along an axis for a length, about one for an angle.
+    // The description says how the error acts: along an axis for a length, about an axis for an angle.
     if (factor.axis.empty()) continue;
     const bool angle = factor.dimension == Dimension::angle;
     EXPECT_NE(factor.description.find(angle ? " about " : " along "), std::string::npos) << factor.description;
@@ -207,7 +207,7 @@ TEST_P(EveryMechanism, HasAWorkspaceInsideReach) {
   }
 }
 
-/// To rounding.
+/// Without errors the responses are zero up to rounding.
 TEST_P(EveryMechanism, RespondsNothingToNoError) {
   const std::unique_ptr<Evaluator> evaluator = model_->evaluator({});
   for (const std::vector<double>& pose : poses()) {
@@ -217,7 +217,7 @@ TEST_P(EveryMechanism, RespondsNothingToNoError) {
   }
 }
 
-/// In every bit: a sample does not depend on its neighbours, nor on what was solved before.
+/// A sample has the same bits alone and in a block, whatever was solved before.
 TEST_P(EveryMechanism, SolvesABlockAsItsSamples) {
   constexpr std::size_t kCount = 21;
   const ModelDescription& model = description();
@@ -271,7 +271,7 @@ TEST_P(EveryMechanism, FindsNothingUnusual) {
   EXPECT_TRUE(model_->unusual_errors().empty());
 }
 
-/// Parameters of the platform and of the base, 800 mm against 200 mm.
+/// The tuples name a mechanism and the size parameters of its platform (800 mm) and base (200 mm).
 TEST(UnusualGeometry, IsAPlatformLargerThanItsBase) {
   for (const auto& [model, platform, base] :
        {std::tuple("2upr-rpu", "l_A", "l_B"), {"3-prs", "c", "a"}, {"xy-3-prs", "c", "a"}}) {
@@ -308,8 +308,8 @@ TEST_P(EveryMechanism, HasTemplatesThatReadBack) {
   }
 }
 
-/// Mean square of every response over all signs of some errors of this size, [R]: what independent errors of mean zero
-/// give, without sampling. The size is where effects are linear.
+/// [responses] The mean square of each response over all combinations of signs of some errors of size kSize. It is the
+/// exact mean square for independent errors with mean zero. At this size the effects are linear.
 std::vector<double> mean_squares_over_signs(Evaluator& evaluator, const ModelDescription& model,
                                             std::span<const double> pose, std::span<const FactorIndex> errors) {
   constexpr double kSize = 1e-6;
@@ -326,8 +326,8 @@ std::vector<double> mean_squares_over_signs(Evaluator& evaluator, const ModelDes
   return squares;
 }
 
-// Errors whose effect is of second order would make a sum of nothing, so each response must move by a tenth of the
-// errors at least.
+// Mean squares below kNoticeable (responses below a tenth of the errors) are not compared, because they may be
+// second-order effects.
 TEST_P(EveryMechanism, HasMeanSquaresThatAdd) {
   constexpr double kNoticeable = 1e-14;
   constexpr std::size_t kTogether = 6;
@@ -351,7 +351,7 @@ TEST_P(EveryMechanism, HasMeanSquaresThatAdd) {
     }
   }
   bool some_may_exceed = false;
-  double most = 0.0;  // of those that may
+  double most = 0.0;  // the largest ratio of these responses
   for (std::size_t r = 0; r < largest.size(); ++r) {
     const Response& response = model.responses[r];
     EXPECT_LT(largest[r], response.mean_square_bound * (1.0 + 1e-3)) << response.name;
@@ -365,7 +365,7 @@ TEST_P(EveryMechanism, HasMeanSquaresThatAdd) {
   }
 }
 
-/// The norm of the vector that a model names behind a response: of other responses, or of details.
+/// [samples] The norm of the vector that the model states for a response: a vector of other responses, or of details.
 std::vector<double> norms_of(const Model& model, std::size_t response, std::span<const double> pose,
                              const Outcomes& found, std::size_t count) {
   const std::vector<std::size_t>& components = model.description().responses[response].components;
@@ -387,7 +387,7 @@ std::vector<double> norms_of(const Model& model, std::size_t response, std::span
 
 TEST_P(EveryMechanism, NamesTheVectorOfEachNorm) {
   constexpr std::size_t kSamples = 5;
-  constexpr double kSize = 1e-5;  // what is not linear is below a billionth
+  constexpr double kSize = 1e-5;  // nonlinear effects are below 1e-9
   const ModelDescription& model = description();
   const auto evaluator = model_->evaluator({});
   std::mt19937_64 random(20260103);
@@ -400,13 +400,14 @@ TEST_P(EveryMechanism, NamesTheVectorOfEachNorm) {
     const Outcomes found = solve(*evaluator, model, pose, all, values, kSamples);
     for (std::size_t r = 0; r < model.responses.size(); ++r) {
       const std::span own = std::span(found.responses).subspan(r * kSamples, kSamples);
-      if (std::ranges::any_of(own, [](double value) { return value < 0.0; })) continue;  // it has a sign
+      if (std::ranges::any_of(own, [](double value) { return value < 0.0; })) continue;  // it is not a norm
       const Response& response = model.responses[r];
       const bool is_named = !response.components.empty() || !model_->norm_of_details(r, pose).empty();
       if (!is_named) continue;  // a component that happens to be positive; the norms are listed below
       const std::vector<double> norms = norms_of(*model_, r, pose, found, kSamples);
       for (std::size_t s = 0; s < kSamples; ++s) {
-        // As published a mean and the largest of three norms: of the sides of a triangle.
+        // The published deformations are the mean and the maximum of three norms, so they differ from the norm of the
+        // vector.
         const bool is_exact = response.mean_square_bound == 1.0;
         EXPECT_NEAR(own[s], norms[s], (is_exact ? 1e-9 : 0.35) * norms[s] + 1e-15) << response.name;
       }

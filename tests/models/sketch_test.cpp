@@ -1,4 +1,4 @@
-// What models say to pictures, against their evaluators and files.
+// Compares the sketches of models, which pictures use, with their evaluators and files.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ CatalogEntry from_gallery(const std::string& name) {
   return registry().from_text(text.str(), path);
 }
 
-/// Mechanisms of the catalog and of the gallery, by their names there.
+/// The entry of a mechanism in the registry or, if there is none, in the gallery.
 CatalogEntry entry_of(const std::string& name) {
   const CatalogEntry* known = find(registry(), name);
   return known == nullptr ? from_gallery(name.substr(name.find('/') + 1)) : by_metric(*known, "platform");
@@ -43,7 +43,7 @@ class Sketches : public testing::TestWithParam<const char*> {
     }
   }
 
-  /// Responses, and details behind them, to one error of this size.
+  /// The responses followed by the details, for one error of this size (SI).
   std::vector<double> outcome(std::size_t factor, double size) const {
     const ModelDescription& description = model_->description();
     std::size_t details = 0;
@@ -68,7 +68,7 @@ double distance(const SketchVector& a, const SketchVector& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// Of a motion at a point.
+/// The displacement of the point p by the twist t = [rotation; translation].
 SketchVector displaced(const SketchTwist& t, const SketchVector& p) {
   return {t[3] + t[1] * p[2] - t[2] * p[1], t[4] + t[2] * p[0] - t[0] * p[2], t[5] + t[0] * p[1] - t[1] * p[0]};
 }
@@ -92,7 +92,7 @@ TEST_P(Sketches, JointsStandAtTheirFrames) {
         if (joint.type != 'P' && joint.type != 'C' && joint.type != 'H') {
           EXPECT_LT(length, 1e-12) << joint.name;
         }
-        // A joint that slides moves its frame along its axis.
+        // A sliding joint displaces its frame only along the joint's axis.
         const SketchVector& z = frame.axes[2];
         EXPECT_NEAR(std::abs(moved[0] * z[0] + moved[1] * z[1] + moved[2] * z[2]), length, 1e-12);
       }

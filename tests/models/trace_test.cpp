@@ -1,4 +1,4 @@
-// The iterations that each mechanism shows, against its evaluator.
+// Compares the trace of iterations of each mechanism with its evaluator.
 
 #include <gtest/gtest.h>
 
@@ -54,7 +54,7 @@ TEST_P(Trace, HasARowForEachIterationAndTheSolution) {
   for (std::size_t r = 0; r < responses.size(); ++r) EXPECT_NEAR(trace->responses[r], responses[r], 1e-13) << r;
 }
 
-/// Of what iterates.
+/// Tests for mechanisms whose solver iterates.
 class IteratedTrace : public Trace {};
 
 TEST_P(IteratedTrace, EndsWhereTheCapIs) {
@@ -72,7 +72,7 @@ TEST_P(Trace, StepsBecomeSmallerThanTheTolerance) {
   const auto trace = model_->trace(pose_, errors_, options);
   EXPECT_EQ(trace->status, SolveStatus::converged);
   if (!GetParam().iterates) return;
-  // The number that is judged stands first.
+  // The first column of a row is the number that is compared with the tolerance.
   EXPECT_LT(trace->rows[trace->rows.size() - trace->columns.size()], options.tolerance);
   EXPECT_GT(trace->rows[0], options.tolerance);
 }

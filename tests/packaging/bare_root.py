@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
-"""Does what README.md tells a new user to do, in a root that holds only Debian's minimal base, ca-certificates and git.
+"""Follows README.md like a new user, in a root that has only Debian's minimal base, ca-certificates and git.
 
-    bare_root.py         the first command under "Start": it must build without a warning, end well, print the ranked table and
-                         the published ranking beside it, and leave results and reports; nothing that only tests need may be
-                         installed for it
+    bare_root.py         the first command under "Start": it must build without a warning, succeed, print the ranked
+                         table and the published ranking next to it, and write results and reports; it must not install
+                         packages that only tests need
     bare_root.py test    the second command: all tests must pass
-    bare_root.py python  the third command: what it prints as the next step must rank the errors, the environment must have all
-                         that use_python.py asks for, and a second run must take in what has changed in the sources
-    bare_root.py program python    the first command, then the third in the same root, which saves building the program again
+    bare_root.py python  the third command: the next step that it prints must rank the errors, the environment must pass
+                         use_python.py, and a second run must include changes of the sources
+    bare_root.py program python    the first command, then the third in the same root, which builds the program once
 
-With --suite bookworm or --suite trixie the root has that release of Debian; without, it has this machine's.
-It makes the root with mmdebstrap from this machine's sources of Debian packages, clones the commit that is checked out
-here into it, and removes it at the end. It must be started as root; what it mounts, only its own processes see.
+With --suite bookworm or --suite trixie the root has this release of Debian, otherwise the release of this machine. The
+root is made by mmdebstrap from this machine's sources of Debian packages, with a clone of the commit that is checked
+out here, and is removed at the end. The script must be started as root. Only its own processes see what it mounts.
 """
 
 import argparse
@@ -26,19 +26,20 @@ import time
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-CLONE = "root/poesy"  # inside the root
-ERRORS = 25  # of the published study
-MOST_PACKAGES = {"bookworm": 155, "trixie": 195}  # 143 and 184 are needed
+CLONE = "root/poesy"  # path in the root
+ERRORS = 25  # number of errors of the published study
+MOST_PACKAGES = {"bookworm": 155, "trixie": 195}  # upper limits; 143 and 184 are needed
 FOR_TESTS_ALONE = {"libgtest-dev", "libbenchmark-dev", "npm", "nodejs", "octave", "octave-dev", "chromium", "doxygen", "pandoc",
                    "python3-numpy", "gnuplot-nox", "zsh", "man-db", "help2man"}
-FOR_PYTHON = {"python3-numpy"}  # of these
-MOST_FOR_PYTHON = {"bookworm": 265, "trixie": 310}  # 253 and 296 are needed
+FOR_PYTHON = {"python3-numpy"}  # those of FOR_TESTS_ALONE that Python needs
+MOST_FOR_PYTHON = {"bookworm": 265, "trixie": 310}  # upper limits; 253 and 296 are needed
 ENVIRONMENT = "build/python-venv"
 RESULTS = ("build/2upr-rpu-platform.h5", "build/2upr-rpu-published.h5")
 REPORTS = ("build/2upr-rpu-platform.html", "build/2upr-rpu-both.html")
 HOSTS = "127.0.0.1 localhost\n::1 localhost\n"
-CERTIFICATES = "usr/local/share/ca-certificates"  # that this machine trusts besides Debian's, to reach npm
-# A mount namespace and a process namespace of its own: mounts and processes end with the command.
+# Folder of certificates that this machine trusts in addition to those of Debian; npm needs them.
+CERTIFICATES = "usr/local/share/ca-certificates"
+# Runs a command in new mount and process namespaces, so its mounts and processes end with it.
 ENTER = ["unshare", "--mount", "--pid", "--fork", "--kill-child", "sh", "-c",
          'mount -t proc proc "$1/proc" && mount --rbind /dev "$1/dev" && mount -t sysfs sysfs "$1/sys" && '
          'root=$1 && shift && exec chroot "$root" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin '
@@ -299,7 +300,7 @@ def obey(wanted, command, suite, root, before, clock):
     """Runs the command and judges what comes of it; gives the number of packages in the root that it needs, and what it says."""
     clock.begin(command)
     output = follow(root, command, clock)
-    if wanted != "test":  # GCC 14 warns falsely of null pointers in Eigen and GoogleTest, where tests use them
+    if wanted != "test":  # in tests, GCC 14 has false warnings about null pointers in Eigen and GoogleTest
         check_warnings(output)
     after = installed(root)
     if wanted == "test":

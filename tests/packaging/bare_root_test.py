@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Plants faults in what bare_root.py reads: it must find each, and none in what is right."""
+"""Plants faults in the texts that bare_root.py reads: it must find each fault, and none in correct texts."""
 
 import unittest
 

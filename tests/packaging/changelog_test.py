@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What packages take from CHANGELOG.md: Debian's changelog, by engine/packaging/debian/changelog.awk, and their version, by
-engine/packaging/generator.cmake. And that the version is the same wherever it is said."""
+"""Tests what packages take from CHANGELOG.md: Debian's changelog (engine/packaging/debian/changelog.awk) and the
+version of the packages (engine/packaging/generator.cmake). All files state the same version."""
 
 import re
 import subprocess
@@ -51,7 +51,7 @@ poesy (0.2.0-1) unstable; urgency=medium
 """
 
 
-# How the version is said, in one group each.
+# For each file with the version, a pattern whose only group is the version.
 SAID = {
     "CMakeLists.txt": r"^project\(poesy VERSION (\S+) ",
     "CITATION.cff": r"^version: (\S+)$",

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Does what engine/packaging/container/Containerfile says, without a container engine, and uses what comes of it.
+"""Follows engine/packaging/container/Containerfile without a container engine, and uses the result.
 
-Each FROM becomes a root that mmdebstrap makes of the Debian release that the image has, with the documents left out that slim
-images leave out. RUN, COPY, WORKDIR, ENV and ENTRYPOINT are done there as an engine does them; the context is the commit that is
-checked out here, with a build folder as a developer has one, which .dockerignore must keep out. In the last root a user
-without rights starts the entry point with the arguments that README.md's `podman run` gives, in the folder that it mounts.
+Each FROM becomes a root that mmdebstrap makes of the image's Debian release, without the documents that slim images
+omit. RUN, COPY, WORKDIR, ENV and ENTRYPOINT are executed there as an engine would. The context is the commit that is
+checked out here, with a developer's build folder, which .dockerignore must exclude. In the last root a user without
+privileges starts the entry point with the arguments of README.md's `podman run`, in the folder that it mounts.
 
-It must be started as root; what it mounts, only its own processes see. It needs mmdebstrap.
+The script must be started as root and needs mmdebstrap. Only its own processes see what it mounts.
 """
 
 import json
@@ -22,10 +22,10 @@ from bare_root import ENTER, REPOSITORY, Clock, Fault, clone, follow, in_work_fo
 
 CONTAINERFILE = "engine/packaging/container/Containerfile"
 SUITES = {"docker.io/library/debian:12-slim": "bookworm", "docker.io/library/debian:13-slim": "trixie"}
-# As debuerreotype, which makes Debian's images, sets it for the slim ones.
+# The dpkg settings of Debian's slim images, as set by debuerreotype, which makes these images.
 SLIM = "".join(f"path-exclude /usr/share/{name}\n" for name in ("doc/*", "groff/*", "info/*", "lintian/overrides/*", "locale/*",
                                                                 "man/*")) + "path-include /usr/share/doc/*/copyright\n"
-USER = 12345  # whom no file in the root knows
+USER = 12345  # a user id that no file in the root mentions
 STUDY = """format = "poesy-study"
 version = 1
 mechanism = { model = "3-prs" }
@@ -43,7 +43,7 @@ class Stage:
 
     suite: str
     name: str
-    steps: list = field(default_factory=list)  # (instruction, its text)
+    steps: list = field(default_factory=list)  # pairs (instruction, its text)
 
 
 @dataclass

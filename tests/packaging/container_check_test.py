@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Plants faults in what container_check.py reads and looks at: it must find each, and none in what is right."""
+"""Plants faults in what container_check.py reads and inspects: it must find each fault, and none in correct input."""
 
 import tempfile
 import unittest

@@ -1,19 +1,20 @@
 #!/usr/bin/env python3
-"""Makes the packages of a build and uses them in a root that holds only Debian's minimal base.
+"""Makes the packages of a build and uses them in a root that has only Debian's minimal base.
 
-    package_check.py BUILD                     BUILD is a build folder, in which the program is built; where it has
-                                               POESY_PYTHON_MODULE, poesy_solver too, and python3-poesy is one of the packages
+    package_check.py BUILD                     BUILD is a build folder in which the program is built; with the option
+                                               POESY_PYTHON_MODULE poesy_solver too, and python3-poesy is also made
     package_check.py BUILD --no-development    without libpoesy-dev and the project that is built with it
-    package_check.py BUILD --portable BUILD2   the tarball from BUILD2, configured by the preset portable; it must run in the
-                                               root before anything is installed there
+    package_check.py BUILD --portable BUILD2   the tarball is made from BUILD2, configured by the preset portable; it
+                                               must run in the root before anything is installed
 
-The packages come from cpack, and lintian must find no error in them. In the root, `apt-get install ./poesy_*.deb` is all that
-is done before the published study runs; its ranking must be the one that bare_root.py asks for. Then libpoesy-dev: a project
-that knows the package alone is built and run. Then the tarball. Then python3-poesy, which the system's Python uses as
-use_python.py says. Then the Python package as pip installs it (engine/python), with its notebook.
-At last the packages are removed, and nothing of them may stay.
+cpack makes the packages, and lintian must find no error in them. In the root, `apt-get install ./poesy_*.deb` is the
+only preparation for the published study; its ranking must be the one that bare_root.py expects. Then these are used in
+turn: libpoesy-dev, with which a project is built and run; the tarball; python3-poesy, which the system's Python uses as
+in use_python.py; and the Python package as installed by pip (engine/python), with its notebook. At the end the packages
+are removed and must leave nothing behind.
 
-It must be started as root; what it mounts, only its own processes see. It needs mmdebstrap, lintian and dpkg-dev.
+The script must be started as root and needs mmdebstrap, lintian and dpkg-dev. Only its own processes see what it
+mounts.
 """
 
 import argparse
@@ -28,8 +29,8 @@ from pathlib import Path
 from bare_root import (REPOSITORY, Clock, Fault, check_comparison, check_table, follow, in_work_folder, installed, make_root,
                        run)
 
-HOME = "root"  # inside the root
-# Nothing here needs to survive a loss of power, and without that care dpkg is several times as fast.
+HOME = "root"  # path in the root
+# The root need not survive a loss of power; with force-unsafe-io dpkg is several times as fast.
 APT = "DEBIAN_FRONTEND=noninteractive apt-get -q -o Dpkg::Use-Pty=0 -o Dpkg::Options::=--force-unsafe-io"
 EXAMPLES = "/usr/share/doc/poesy/examples/2upr-rpu-sensitivity"
 MECHANISMS = "usr/share/poesy/mechanisms"
@@ -43,7 +44,7 @@ INSTALLED_FOR_PYTHON = (f"{PYTHON_PLACE}/poesy/__init__.py", f"{PYTHON_PLACE}/po
                         "usr/share/doc/python3-poesy/notices/pybind11-dev.txt")
 RESULTS = ("platform.h5", "published.h5")
 REPORTS = ("platform.html", "both.html")
-# The headings are those of quickstart, by which bare_root.py finds the tables.
+# The headings are those of ./quickstart, because bare_root.py finds the tables by them.
 STUDY = f"""set -e
 echo '== Running the published study'
 poesy run {EXAMPLES}/platform.toml -o platform.h5 --quiet

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Plants faults in what package_check.py looks at: it must find each, and none in what is right."""
+"""Plants faults in what package_check.py inspects: it must find each fault, and none in correct input."""
 
 import gzip
 import tempfile

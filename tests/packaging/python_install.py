@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Installs the Python package with pip and without network, into a virtual environment, and executes its notebook there.
+"""Installs the Python package by pip without network into a virtual environment, and executes its notebook there.
 
 usage: python_install.py --program PATH [--python PATH]
 
-The environment sees the system's packages (h5py, xarray, matplotlib, setuptools, wheel; nbclient and ipykernel for the notebook), so
-nothing is downloaded. The package is taken from a copy of engine/python, because pip leaves its build beside the sources.
-Ends with 0 where all is well, 1 where not, and 77 where the notebook could not be executed for want of a package.
+The environment sees the packages of the system (h5py, xarray, matplotlib, setuptools, wheel; nbclient and ipykernel for
+the notebook), so nothing is downloaded. A copy of engine/python is installed, because pip leaves build files next to
+the sources. Exits with 0 on success, 1 on failure, and 77 if a package that executes the notebook is missing.
 """
 
 import argparse

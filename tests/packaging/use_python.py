@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Uses poesy in Python as it is installed below a folder: the package, the compiled module and the program that it finds.
+"""Uses poesy in Python as it is installed in a folder: the package, the compiled module and the program that they find.
 
-usage: PYTHON use_python.py FOLDER       FOLDER is /usr, or that of the virtual environment of PYTHON
+usage: PYTHON use_python.py FOLDER       FOLDER is /usr, or the virtual environment of PYTHON
 
-Package, module, metadata and program must be those of the folder and of one version. A small study is run, with its ranking.
-The compiled solver gives the bits that the program gives. Ends with 1 and a sentence where something is wrong.
+Package, module, metadata and program must be in the folder and have the same version. A small study is run and ranked.
+The compiled solver must give the same bits as the program. Exits with 1 and a message if something is wrong.
 """
 
 import importlib.metadata
@@ -20,8 +20,8 @@ STUDY = {"mechanism": {"model": "3-prs"}, "poses": {"count": 4},
          "errors": {"linear": {"distribution": "normal", "sigma": "0.05 mm"},
                     "angular": {"distribution": "normal", "sigma": "0.02 deg"}},
          "analysis": {"kind": "sensitivity", "samples": 200}}
-POSES = [[-0.24, 0.0, 0.0], [-0.24, 0.2, -0.1]]  # of the 2upr-rpu: m, rad, rad
-ERRORS, SIZE = 71, 1e-4  # of it; m or rad
+POSES = [[-0.24, 0.0, 0.0], [-0.24, 0.2, -0.1]]  # z, beta, gamma of the 2upr-rpu (m, rad, rad)
+ERRORS, SIZE = 71, 1e-4  # number of errors of the 2upr-rpu; their standard deviation (m, rad)
 
 
 class Fault(Exception):

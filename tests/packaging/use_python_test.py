@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Plants faults in what use_python.py looks at: it must find each, and none in what is right."""
+"""Plants faults in what use_python.py inspects: it must find each fault, and none in correct input."""
 
 import unittest
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Studies that take samples until their intervals are narrow: the same stop and the same bits however they are run."""
+"""Studies with adaptive samples stop at the same number of samples and give the same bits however they are run."""
 
 import h5py
 import numpy
@@ -6,7 +6,7 @@ import numpy
 from poesy_program import main
 from resumption import MACHINES, MONTE_CARLO, POSES, SENSITIVITY, ResumptionTest
 
-ERROR = 0.01 * (16 / POSES) ** 0.5  # which takes as many samples, however many poses there are
+ERROR = 0.01 * (16 / POSES) ** 0.5  # takes about the same number of samples for any number of poses
 TABLE = f"samples = {{ min = 1000, max = 40000, relative_error = {ERROR:g} }}"
 MILESTONES = [1000, 2000, 3000, 5000, 8000, 12000, 18000, 27000, 40000]
 STUDIES = {"sensitivity": SENSITIVITY.replace("samples = 12300", TABLE),
@@ -51,7 +51,7 @@ class Adaptive(ResumptionTest):
                 while code != 0:
                     code, messages = self.run_for(seconds, "--threads", 1, *options)
                     self.assertIn(code, (0, -9), messages)
-                    options = ["--resume"] if self.newer.exists() else []  # it may have ended just before the signal
+                    options = ["--resume"] if self.newer.exists() else []  # else the run ended without a checkpoint
                     seconds *= 1.5
                 self.assertEqual(self.content_hash(), expected)
 

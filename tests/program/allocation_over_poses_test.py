@@ -1,4 +1,4 @@
-"""Allocations under limits over the poses of a machine, held against closed-form kinematics (NumPy)."""
+"""Allocations under limits over all poses of a machine, compared with closed-form kinematics (NumPy)."""
 
 import os
 from pathlib import Path
@@ -54,7 +54,7 @@ def first_order():
         ways = delta.ways(pose, 0.2)
         for e in range(6):
             one = np.eye(3)[e % 3]
-            sized = one / ways if e < 3 else one  # a zero is a scale over the way
+            sized = one / ways if e < 3 else one  # a zero error of 1 m equals a scale error of 1 / travel
             slopes[m, e] = (delta.moved(pose, step * sized, 0.2) - delta.moved(pose, -step * sized, 0.2)) / (2.0 * step)
     return slopes
 
@@ -83,10 +83,10 @@ class AllocationOverPoses(ProgramTest):
             cost = file["allocation"].attrs["cost"]
         loads = self.loads(tolerances, load)
         own = (loads <= 1.0).mean()
-        # The map is off by less than 0.3 % of a load. 4.5 standard errors: alpha = 7e-6.
+        # The first-order map errs by less than 0.3 % of a load. 4.5 standard errors: alpha = 7e-6.
         linear = (np.abs(loads - 1.0) < 0.003).mean()
         self.assertLess(abs(certified - own), 4.5 * np.sqrt(own * (1.0 - own) * (1.0 / count + 1.0 / len(loads))) + linear)
-        # The same loads at other ratios of the tolerances, all at this yield: none costs much less.
+        # Tolerances with other ratios but the same yield do not cost much less.
         for ratio in np.geomspace(0.2, 5.0, 21):
             tried = tolerances * np.array([ratio, 1.0])
             tried /= np.quantile(self.loads(tried, load), own)

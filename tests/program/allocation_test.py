@@ -1,5 +1,5 @@
-"""Tolerances under limits: their certificate is what its own study finds, tables agree, same bits however they are run; what
-cannot be reached, what is not certified, and what is refused."""
+"""Tolerances under limits: the certificate is what its study finds, tables agree, and the bits are the same however
+a study is run. Also limits that cannot be reached, tolerances that are not certified, and studies that are refused."""
 
 import csv
 import json
@@ -54,7 +54,7 @@ sigmas = 3
 FROM_FILES = GAP.replace('model = "2upr-rpu"', 'file = "2upr-rpu.toml"').replace("samples = 10000", "samples = 2000").replace(
     "poses = { count = 8 }", 'poses = { select = "file", file = "poses.csv" }')
 SMALL = ALLOCATION.replace("samples = 30000", "samples = 2500")
-FEWEST = 299  # with which a yield of 0.99 is certified, if all are good
+FEWEST = 299  # the fewest machines that certify a yield of 0.99, if all are good
 
 
 class Allocation(ResumptionTest):
@@ -89,7 +89,7 @@ class Allocation(ResumptionTest):
         with h5py.File(self.folder / result) as found:
             certificate = found["allocation/certificate"]
             machines = int(certificate["design_machines"][()])
-            # A design that had rejects to spare would let parts be coarser.
+            # The design uses all rejects that it may have; otherwise some tolerance could be larger.
             self.assertEqual(certificate["design_rejects"][()], certificate["design_most"][()])
             most = 1 - certificate["design_most"][()] / machines
             bounds = found["allocation/bound"][:]
@@ -183,7 +183,7 @@ class Allocation(ResumptionTest):
         for row in rows:
             self.assertAlmostEqual(row["tolerance"] * shown[row["unit"]] / tolerance[row["part"]], 1.0, places=12)
             self.assertAlmostEqual(row["cost"] / cost[row["part"]], 1.0, places=12)
-            # The drawing is never coarser.
+            # The rounded tolerance of the drawing is never larger than the exact one.
             sign, size, unit = row["drawing"].replace("+-", "+- ").split()
             self.assertEqual((sign, unit), ("+-", row["unit"]))
             self.assertLessEqual(float(size), row["tolerance"])
@@ -220,7 +220,7 @@ class Allocation(ResumptionTest):
                          "with every tolerance at its lowest", "widen the limit", options=options)
             rare = bounded.replace("0.5 mm", "0.06 mm").replace("0.99", "0.995").replace("0.05 mm", "0.06 mm")
             self.refused(rare, "99.5 % of the machines", "cannot be reached", "of 2500 machines", options=options)
-        # Nothing is known before it runs.
+        # `check` accepts a limit that cannot be reached, because it solves nothing.
         self.write("study.toml", tight)
         self.assertIn("# valid: ", self.succeeds("check", "study.toml"))
         held = SMALL.replace('factors = "linear"', 'factors = ["delta_1_0_y"]').replace("0.5 mm", "0.01 mm")
@@ -298,7 +298,7 @@ class Allocation(ResumptionTest):
             done = self.poesy(command[0], "out.h5", *command[1:])
             self.assertEqual(done.returncode, 2)
             self.assertIn(words, done.stderr.decode())
-        self.run_study(SMALL)  # over its own files
+        self.run_study(SMALL)  # replaces its own files
         self.assertEqual(self.succeeds("template", "2upr-rpu", "allocation").count("each = true"), 2)
 
     def test_other_samples_are_another_study(self):

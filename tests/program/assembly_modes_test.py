@@ -1,5 +1,6 @@
-"""Machines that can be assembled in several ways: with errors of any size a machine is the one that grows from the perfect
-one while its errors grow, as kinematics of their own follow it, and none where that comes to a singularity first."""
+"""Machines with several assembly modes: for errors of any size the solved mode continues the nominal one as the
+errors grow from zero, and there is none if a singularity comes first. Compared with independent kinematics that are
+followed too."""
 
 import os
 from pathlib import Path

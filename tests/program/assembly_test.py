@@ -1,5 +1,5 @@
-"""Machines that cannot be put together: exactly those that kinematics of their own cannot solve, by every solver and
-metric and at every size of errors; rejects of a yield; and in words, tables and files what is true of them."""
+"""Machines that cannot be assembled: they are exactly those that independent kinematics cannot solve, for every solver,
+metric and size of errors. They are rejects of a yield, and texts, tables and files say so."""
 
 import json
 import os
@@ -14,7 +14,8 @@ from poesy_program import ProgramTest, main
 
 DATA = Path(os.environ["POESY_DATA"]) / "mechanisms"
 CONVERGED, STAGNATED, CAP, NOT_ASSEMBLED = 0, 1, 2, 5
-SIZES = {FiveBar: 5e-5, FiveBarWithArm: 5e-5, ThreeRpr: 1.2e-3, FlatDelta: 8e-5}  # m, with which a few to thirty per cent cannot be assembled
+# Standard deviations of the errors (m) with which a few to 30 % of the machines cannot be assembled.
+SIZES = {FiveBar: 5e-5, FiveBarWithArm: 5e-5, ThreeRpr: 1.2e-3, FlatDelta: 8e-5}
 
 MONTE_CARLO = """\
 format = "poesy-study"
@@ -71,7 +72,7 @@ class Assembly(ProgramTest):
             for solver in ('method = "newton"', 'method = "gauss-newton"'):
                 status, margins = self.check(mechanism, drawn(mechanism, 3000, SIZES[type(mechanism)]), solver)
                 self.assertGreater((margins < 0.0).sum(), 50)
-                # Gauss-Newton may not come to its end where a machine is built all but straight.
+                # Gauss-Newton may reach the iteration cap if limbs are almost stretched.
                 if "gauss" not in solver:
                     self.assertLessEqual(set(status), {CONVERGED, STAGNATED, NOT_ASSEMBLED})
 
@@ -158,7 +159,7 @@ class Assembly(ProgramTest):
                 impossible = file["solver/solves_by_status"][names.index("not_assembled")].sum()
                 self.assertEqual(impossible, 8000 - round(8000 * found))
                 self.assertEqual(file["solver/not_converged"][:].sum(), impossible)
-            # Five standard errors of 8000 machines: a right program fails once in two million.
+            # Five standard errors of 8000 machines: a correct program fails once in two million runs.
             self.assertLess(abs(found - truth), 5.0 * np.sqrt(truth * (1.0 - truth) / 8000), mechanism.file)
             self.assertIn("% of the samples are machines that cannot be assembled", said)
             self.assertIn("more iterations do not help", said)

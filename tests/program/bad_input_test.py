@@ -1,4 +1,4 @@
-"""Bad input gives one clear sentence with its place, exit code 2, and no file; an existing result stays."""
+"""Bad input gives one clear sentence with its place, exit code 2, and no file. An existing result is kept."""
 
 from poesy_program import AN_OLDER_RESULT, MECHANISMS, STUDY, ProgramTest, main
 
@@ -26,7 +26,7 @@ def helix(new, extra=""):
         '"3-prs"\n', '"3-prs"\n' + extra)
 
 
-# name: (study, where the message points to, words it holds)
+# name: (study, place in the message, words in the message)
 BAD_STUDIES = {
     "unknown_key": (changed("count = 6", "count = 6\ncolour = 1"), "7:1", ["colour"]),
     "unknown_model": (changed('"2upr-rpu"', '"2upr-rpx"'), "4:", ["2upr-rpx", "2upr-rpu"]),
@@ -217,7 +217,8 @@ class BadInput(ProgramTest):
             self.assertIn(said, self.said_of("check", "s.toml"))
 
     def test_a_singular_pose_of_a_file(self):
-        # Rods as long as the radii differ, on the level: the platform cannot be driven from there.
+        # The rods are as long as the difference of the radii, so they are horizontal: the carriages cannot drive the
+        # platform.
         self.write("p.csv", "alpha,beta,z\n0,0,0.3\n")
         study = """\
 format = "poesy-study"

@@ -1,5 +1,6 @@
-"""Mechanisms from files with bodies, held against kinematics of their own: a delta printer whose rods share carriages,
-and an arm with a bell crank at its elbow. First the answers that users asked for, then any errors, then yields."""
+"""Mechanisms from files with bodies, compared with independent kinematics: a delta printer with rods that share
+carriages, and an arm with a bell crank at its elbow. First the answers to users' questions, then random errors, then
+yields."""
 
 import os
 from pathlib import Path
@@ -11,7 +12,7 @@ from own_kinematics import BellCrank, SixRods
 from poesy_program import ProgramTest, main
 
 DATA = Path(os.environ["POESY_DATA"]) / "mechanisms"
-# The middle of the bed, and six places on a circle.
+# Poses (x, y, z in m): the middle of the bed, and six places on a circle.
 ROUND = np.radians(range(0, 360, 60))
 PLACES = np.array([(0.0, 0.0, 0.0)] + [(0.05 * np.cos(a), 0.05 * np.sin(a), 0.0) for a in ROUND])
 PLACE_OF = {"middle": 0, "tower A": 1, "left of A": 2, "right of A": 6}
@@ -80,7 +81,7 @@ class Printer(Branched):
                 (1, rise, "middle", -184, 0), (1, rise, "tower A", -369, 0),          # both rods of a pair 0.5 mm too long
                 (2, rise, "left of A", -108, 0), (2, rise, "right of A", 111, 0)):    # tower A 1 mm to the left
             self.assertEqual(round(values[PLACE_OF[place], row], digits), expected, (row, place))
-        # Carriages beside their place do not tilt the effector: the rods of a pair stay parallel.
+        # Errors that are equal for both rods of a pair do not tilt the effector, because the rods stay parallel.
         self.assertLess(tilted[:, 1:4].max(), 1e-12)
 
     def test_any_errors(self):
@@ -231,7 +232,7 @@ class Crank(Branched):
     """A loop that holds the crank on the arm, and one that holds the effector on the crank."""
 
     FILE = "bell-crank.toml"
-    ANGLES = np.radians([(100, 45), (120, 60), (95, 30), (80, 40)])  # of arm and forearm
+    ANGLES = np.radians([(100, 45), (120, 60), (95, 30), (80, 40)])  # poses: angles of arm and forearm
 
     def displacement(self, errors):
         return self.evaluated(self.FILE, columns(BellCrank().wrist(self.ANGLES), "xy"), errors)
@@ -242,7 +243,7 @@ class Crank(Branched):
         turned = np.degrees(found[..., 5])
         for pose, row, expected in ((0, 0, -0.575), (0, 1, -1.163), (1, 0, -0.594), (1, 1, -2.367)):
             self.assertEqual(round(turned[pose, row], 3), expected)
-        # The rods turn the effector about the wrist, which arm and forearm hold.
+        # The rods only rotate the effector about the wrist; the wrist is held by arm and forearm.
         self.assertLess(np.abs(found[..., :5]).max(), 1e-13)
 
     def test_any_errors(self):

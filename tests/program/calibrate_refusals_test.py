@@ -1,4 +1,4 @@
-"""What `poesy calibrate` refuses: each wrong table and each wrong key with its place, and what to do."""
+"""What `poesy calibrate` refuses: each wrong table and each wrong key, with its place and a remedy."""
 
 import os
 import shutil
@@ -33,7 +33,7 @@ def titled(old, new):
     return table(header=HEADER.replace(old, new))
 
 
-# Wrong tables: text, place, part of the message.
+# Wrong tables: (text, place in the message, part of the message).
 TABLES = [
     (titled("deviation_z", "devation_z"), "1:27", "column 'devation_z' is unknown; did you mean 'deviation_z'?"),
     (titled("deviation_z [um]", "deviation_z [deg]"), "1:27", "a unit of angle, but this column is a length"),
@@ -84,7 +84,7 @@ TABLES = [
 
 FIT = 'fit   = ["zero_1", "zero_2", "zero_3"]'
 NOISE = 'noise = { z = "10 um", distance = "50 um" }'
-# Wrong keys: what is replaced in the study, by what, place, part of the message.
+# Wrong keys: (replaced text of the study, new text, place in the message, part of the message).
 KEYS = [
     (FIT, "", "6:", "key 'fit' is missing"),
     (FIT, "fit = []", "7:7", "is empty"),

@@ -1,4 +1,5 @@
-"""What `show` and the report say of a calibration: residuals, correlations, and what is left, as the result has them."""
+"""Tests that `show` and the report of a calibration agree with the result: residuals, correlations, remaining
+errors."""
 
 import base64
 import json
@@ -112,7 +113,8 @@ class CalibrationReport(ProgramTest):
         components = [moved.index(name) for name in ("x", "y", "z")]
         np.testing.assert_allclose(fields["position, root mean square"],
                                    np.sqrt((left[0][:, components]**2 + left[1][:, components]**2).sum(axis=1)) / MM, rtol=1e-6)
-        # The platform of this printer does not turn, so its tool moves as P does.
+        # The platform of this printer does not rotate, so fields of the tool would equal those of the platform's
+        # origin.
         self.assertEqual({label.split(",")[0] for label in fields}, {"x", "y", "z", "position"})
 
     def test_no_noise(self):

@@ -1,4 +1,4 @@
-"""`poesy calibrate` against numbers that another program computed (tests/data/calibration.json)."""
+"""Compares `poesy calibrate` with numbers that another program computed (tests/data/calibration.json)."""
 
 import json
 import os
@@ -16,7 +16,7 @@ FILES = DATA / "calibration"
 EXPECTED = json.loads((DATA / "calibration.json").read_text())
 DELTA = EXPECTED["delta"]
 HEXAPOD = EXPECTED["hexapod"]
-LENGTHS = slice(3, 6)  # of the components of a displacement
+LENGTHS = slice(3, 6)  # the translations in a displacement
 
 
 def numbers(values):
@@ -54,7 +54,7 @@ class Calibrate(ProgramTest):
     def compare(self, names, found, expected, *, of_estimate, of_sd=1e-6):
         """All numbers of one case. of_estimate: m or rad. of_sd: relative."""
         self.assertEqual(sorted(names), sorted(expected["names"]))
-        place = [names.index(name) for name in expected["names"]]  # the file lists errors in an order of its own
+        place = [names.index(name) for name in expected["names"]]  # the file has another order of errors
         found = dict(found)
         for key in ("estimate", "sd", "low", "high"):
             found[key] = found[key][place]
@@ -63,7 +63,7 @@ class Calibrate(ProgramTest):
         np.testing.assert_allclose(found["estimate"], numbers(expected["theta"]), rtol=0, atol=of_estimate)
         frame = numbers(expected["frame"])
         if frame.size == 6:
-            frame = np.roll(frame, 3)  # there the rotation comes first
+            frame = np.roll(frame, 3)  # the expected numbers begin with the rotation
         np.testing.assert_allclose(found["frame"], frame, rtol=0, atol=3 * of_estimate)
         np.testing.assert_allclose(found["sd"], numbers(expected["sd"]), rtol=of_sd)
         for key in ("low", "high"):
@@ -191,7 +191,7 @@ class Calibrate(ProgramTest):
     def test_seven_numbers_of_a_printer_of_six_rods(self):
         """13 heights, each known to 2 um, are fitted as well as they are known; and it is said that the length of the rods
         is hardly told from the end stops."""
-        moved = {}  # of each error by the fitted numbers, in the base's axes
+        moved = {}  # each error per unit of each fitted number, in base axes
         for k, (end_stop, turn) in enumerate(zip("abc", ("turn_a", "turn_b", None))):
             c, s = np.cos(2 * np.pi * k / 3), np.sin(2 * np.pi * k / 3)
             for rod in (k + 1, k + 4):
@@ -223,7 +223,7 @@ class Calibrate(ProgramTest):
         with h5py.File(self.folder / "r.h5") as file:
             names = [name.decode() for name in file["fitted"][:]]
             found = file["calibration"]
-            # Of 7 normal numbers and chi-square of 6 degrees of freedom: alpha = 1e-6 each.
+            # Bounds of 7 standard normal numbers, and of chi-square with 6 degrees of freedom: alpha = 1e-6 each.
             off = (found["estimate"][:] - [true[name] for name in names]) / found["sd"][:]
             self.assertLess(np.abs(off).max(), 4.9)
             self.assertEqual(found["dof"][()], 6)
@@ -262,7 +262,7 @@ class Calibrate(ProgramTest):
         self.succeeds("verify", "a.h5")
         shown = self.succeeds("show", "a.h5")
         solves = int(re.search(r"\n([\d ]+) solves in", shown)[1].replace(" ", ""))
-        self.assertGreater(solves, 7 * 1000)  # of the limits alone: 1000 machines at 7 poses
+        self.assertGreater(solves, 7 * 1000)  # the limits alone need 1000 machines at 7 poses
         self.assertNotIn("converge", shown)
         shown = json.loads(self.poesy("show", "a.h5", "--json").stdout)
         self.assertIn("fitted", json.dumps(shown))
@@ -361,7 +361,7 @@ class Calibrate(ProgramTest):
         present = "present = { " + ", ".join(f'{name} = "{value!r} m"' for name, value in estimate.items()) + " }"
         names, found, _ = self.calibrated("hexapod-measured.toml", "zero.csv",
                                           [("frame ", present + "\nframe "), ('"tolerances" ', '"none" ')])
-        # Heights and angles of six freedoms are right where the controller has the errors that the machine has.
+        # A controller that has the machine's errors reaches every commanded pose exactly.
         np.testing.assert_allclose(found["residual"], 0.0, atol=1e-11)
         np.testing.assert_allclose(found["estimate"], [estimate[name] for name in names], rtol=0, atol=2e-8)
 

@@ -1,5 +1,5 @@
-"""Tolerances of calibrated machines: their certificate is what its own study finds and what linear algebra predicts, same bits
-however they are run, and what is refused."""
+"""Tolerances of calibrated machines: the certificate is what its study finds and what linear algebra predicts, the
+bits are the same however a study is run, and wrong studies are refused."""
 
 import os
 import shutil
@@ -22,7 +22,7 @@ measured = ["z"]
 noise    = { z = "10 um" }
 combinations.radius = { foot_x_1 = 1, foot_x_2 = 1, foot_x_3 = 1 }
 """
-# Two units of 40 machines, the second of which is smaller.
+# Number of machines for two work units: 40 and 5.
 TWO_UNITS = 45
 PLAIN = """\
 format = "poesy-study"
@@ -44,7 +44,7 @@ bounds = ["0.01 mm", "1.5 mm"]
 """
 STUDY = PLAIN + CALIBRATION
 SMALL = STUDY.replace("samples = 200", f"samples = {TWO_UNITS}").replace("yield = 0.9", "yield = 0.8")
-# Alpha = 1e-5 of one comparison of two shares.
+# Bound of a comparison of two shares in standard errors: alpha = 1e-5.
 SIGMAS = 4.5
 
 
@@ -92,7 +92,7 @@ class CalibratedAllocation(ResumptionTest):
         fitted = np.array([[float(name in fit) for fit in FITS.values()] for name in NAMES])
         heights = by_error[:, 2, :]
         gain = np.linalg.pinv(heights @ fitted)
-        moved = by_error @ fitted @ gain  # by each measured height, [places x 3 x places]
+        moved = by_error @ fitted @ gain  # [places x 3 x places] the correction per measured height
         random = np.random.default_rng(8)
         errors = random.normal(size=(machines, 12)) * np.array([tolerance[name] for name in NAMES]) / 3.0
         noise = random.normal(0.0, NOISE, (machines, len(heights)))
@@ -106,9 +106,9 @@ class CalibratedAllocation(ResumptionTest):
         self.assertEqual(list(tolerance), NAMES)
         self.same_as_its_study()
         error = np.sqrt(share * (1.0 - share) / machines)
-        # Errors of a millimetre leave a hundredth of what they do for the second order.
+        # Second-order effects, which the linear map neglects, are about 1 % for errors of 1 mm.
         self.assertLess(abs(self.good_machines(tolerance) - share), SIGMAS * error + 0.01)
-        # What the controller corrects is as coarse as it may be, and calibration saves.
+        # The tolerance of an error that the controller corrects is at its upper bound, and calibration lowers the cost.
         self.assertAlmostEqual(tolerance["zero_1"], 1.5e-3)
         self.ran(PLAIN, output="plain.h5")
         self.assertLess(cost, 0.7 * self.found("plain.h5")[3])
@@ -127,7 +127,7 @@ class CalibratedAllocation(ResumptionTest):
         self.same_as_its_study()
         tolerance, _, _, _ = self.found()
         self.assertGreater(tolerance["rod_1"], 0.5e-3)
-        self.ran(PLAIN)  # a certificate without them
+        self.ran(PLAIN)  # a certificate without measured places
         self.assertFalse((self.folder / "out_certificate_measured.csv").exists())
 
     def test_same_bits(self):

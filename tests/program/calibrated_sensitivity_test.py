@@ -1,4 +1,5 @@
-"""Indices of what a calibration leaves of single errors, against linear algebra with differences of plain solves."""
+"""Indices of the effects that remain of single errors after a calibration, compared with linear algebra on finite
+differences of plain solves."""
 
 import os
 import shutil
@@ -104,15 +105,15 @@ class CalibratedSensitivity(ProgramTest):
             with self.subTest(prior=prior):
                 after = self.indices(PLAIN + CALIBRATION + ('prior = "tolerances"\n' if prior else ""))
                 left = self.left(by_error, prior)
-                # The same draws in both studies, so the standard deviations are in proportion to the derivatives.
+                # Both studies have the same draws, so the standard deviations are in proportion to the derivatives.
                 size = np.abs(by_error).max(axis=2, keepdims=True)
                 scatter = np.where(size > 0.05, before.max(axis=2, keepdims=True) / size, np.nan)
                 expected = np.abs(left) * scatter
-                known = np.isfinite(expected)  # not where an error alone moves nothing
+                known = np.isfinite(expected)  # unknown if the error alone has no effect
                 self.assertGreater(known.mean(), 0.85)
                 np.testing.assert_allclose(after[known], expected[known], rtol=0, atol=2e-4)
                 zero, rod = NAMES.index("zero_1"), NAMES.index("rod_1")
-                if not prior:  # an end stop is found, a rod is taken for other errors
+                if not prior:  # the fit finds an end stop, but explains a rod by other errors
                     self.assertLess(after[zero].max(), 2e-4)
                     self.assertGreater(before[zero].max(), 0.1)
                 self.assertGreater(after[rod].max(), 0.1)

@@ -1,4 +1,4 @@
-"""Studies whose machines are calibrated, against the yields of another program (tests/data/calibration.json)."""
+"""Studies of calibrated machines, compared with yields that another program computed (tests/data/calibration.json)."""
 
 import json
 import os
@@ -22,7 +22,7 @@ combinations.side_2 = { foot_y_2 = 1 }
 combinations.rods   = { rod_1 = 1, rod_2 = 1, rod_3 = 1 }
 """
 MACHINES = 400
-# Of a standard normal number: 28 comparisons of shares and root mean squares, alpha = 1e-5 together.
+# Bound of a standard normal number: 28 comparisons of shares and root mean squares have alpha = 1e-5 together.
 SIGMAS = 5.1
 
 
@@ -63,7 +63,7 @@ class CalibratedStudy(ProgramTest):
     def test_yields(self):
         for one in YIELDS:
             if (len(one["fit"]), one["noise"]) not in ((3, 0.0), (4, 5e-6), (6, 5e-6), (7, 5e-6), (7, 2e-5)):
-                continue  # each takes seconds
+                continue  # not all, because each takes seconds
             what = f"{one['fit']} {one['noise']} {one['prior']}"
             with self.subTest(what):
                 prior = f'prior = "{one["prior"]}"\n'
@@ -77,7 +77,7 @@ class CalibratedStudy(ProgramTest):
                     self.assertEqual(file["yield/calibration/not_fitted"][()], 0)
                 lateral = np.sqrt(np.mean(rms["x"] ** 2 + rms["y"] ** 2))
                 self.near_rms(lateral, one["first_order_rms_lateral"], what)
-                if one["first_order_rms_z"] > 1e-6:  # below it the second order counts
+                if one["first_order_rms_z"] > 1e-6:  # smaller values have noticeable second-order effects
                     self.near_rms(np.sqrt(np.mean(rms["z"] ** 2)), one["first_order_rms_z"], what)
 
     def test_three_yields_are_those_of_three_studies(self):
@@ -147,7 +147,7 @@ class CalibratedStudy(ProgramTest):
 
     def test_same_bits(self):
         """On threads and shards, after a stop, and as the continuation of a shorter study."""
-        text = with_calibration(["zero_*", "radius"], machines=130)  # three units of 40 and a smaller one
+        text = with_calibration(["zero_*", "radius"], machines=130)  # three units of 40 machines and a smaller one
         self.ran(text, "--threads", "1", output="one.h5")
         expected = self.content_hash("one.h5")
         self.ran(text, "--threads", "2", output="two.h5")
@@ -168,7 +168,7 @@ class CalibratedStudy(ProgramTest):
     def test_errors_are_those_of_the_study_without_it(self):
         """Noise has streams of its own: with a fit of nothing that matters, machines are nearly as they are made."""
         text = with_calibration(["zero_1", "zero_2", "zero_3"], "5 um", 'prior = "tolerances"\n', machines=200)
-        text = text.replace('noise = { z = "5 um" }', 'noise = { z = "1 m" }')  # measurements that say nothing
+        text = text.replace('noise = { z = "5 um" }', 'noise = { z = "1 m" }')  # useless measurements
         self.ran(text)
         self.ran(STUDY.split("[analysis.calibration]")[0].replace("20000", "200"), output="plain.h5")
         with h5py.File(self.folder / "r.h5") as file, h5py.File(self.folder / "plain.h5") as plain:
@@ -269,7 +269,7 @@ class CalibratedStudy(ProgramTest):
         names = [f"{kind}_{limb}" for kind in ("foot_x", "foot_y", "zero", "rod") for limb in (1, 2, 3)]
         machines = [dict(zip(names, map(float, row))) for row in drawn]
         made = self.evaluated(machines, "")
-        by_number = 1e3 * self.evaluated([{name: 0.001 for name in errors} for errors in fit.values()], "")  # per mm
+        by_number = 1e3 * self.evaluated([{name: 0.001 for name in errors} for errors in fit.values()], "")  # m per mm
         table = '[analysis.calibration]\nfit = ["zero_*", "radius"]\nmeasured = ["z"]\nnoise = { z = "5 um" }\n'
         table += "combinations.radius = { foot_x_1 = 1, foot_x_2 = 1, foot_x_3 = 1 }\n"
         left = self.evaluated(machines, table)

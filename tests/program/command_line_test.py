@@ -1,4 +1,4 @@
-"""What the program says of command lines that it does not understand."""
+"""What the program prints for command lines that it does not understand."""
 
 from poesy_program import STUDY, ProgramTest, main
 
@@ -58,7 +58,7 @@ class CommandLine(ProgramTest):
         self.assertEqual(done.returncode, 2)
         self.assertIn(b"--directory has the option '--quiet' for its value", done.stderr)
         self.assertEqual([path.name for path in self.folder.iterdir()], ["study.toml"])
-        self.write("--study.toml", STUDY)  # a file of such a name is one
+        self.write("--study.toml", STUDY)  # after "--" this is the name of a file
         self.succeeds("check", "--", "--study.toml")
 
     def test_too_many_results(self):

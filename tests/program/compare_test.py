@@ -1,4 +1,4 @@
-"""`poesy show A B ...` and `report A B ...`: which design is better, by how much, and whether that is certain."""
+"""`poesy show A B ...` and `report A B ...`: which design is better, by how much, and whether this is certain."""
 
 import json
 import os

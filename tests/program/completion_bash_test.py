@@ -1,4 +1,4 @@
-"""Completion in bash: the script's function, asked as bash asks it."""
+"""Completion in bash: the function of the script, called in the way bash calls it."""
 
 import shutil
 import subprocess

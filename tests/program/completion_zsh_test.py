@@ -1,4 +1,4 @@
-"""Completion in zsh: a person at a terminal types the beginning and presses the tab key."""
+"""Completion in zsh: the beginning of a word and the tab key are typed at a terminal."""
 
 import shutil
 import subprocess

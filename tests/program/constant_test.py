@@ -1,5 +1,6 @@
-"""What does not vary has nothing to be shared. In a planar five-bar whose errors lie in its plane the gap, z, theta_x and
-theta_y are rounding: every kind of study says so, ranks nothing by them and begins with what varies."""
+"""Responses that do not vary have no shares of a variance. In a planar five-bar with errors in its plane the gap, z,
+theta_x and theta_y are rounding errors: every kind of study says so, has no ranking by them, and begins with what
+varies."""
 
 import csv
 import json
@@ -82,7 +83,7 @@ class Constant(ProgramTest):
                     found = file[path][:]
                     self.assertTrue(numpy.isnan(found[~varying]).all(), path)
                     self.assertTrue(numpy.isfinite(found[varying]).any(axis=1).all() or found.ndim > 2, path)
-                # What varies shares all of its variance: S1 of all add up to 1 for a component, nearly.
+                # The S1 of all errors on a component that varies add up to about 1.
                 x = file["sobol/aggregated/S1"][names.index("x")]
                 self.assertAlmostEqual(x.sum(), 1.0, delta=0.15)
                 found = file["sobol/vector/ST"][:]
@@ -122,7 +123,7 @@ class Constant(ProgramTest):
                 self.succeeds("report", "out.h5", "-o", "report.html")
                 page = (self.folder / "report.html").read_text(encoding="utf-8")
                 for wrong in ("gap: shares of its variance", "because it does not vary or errors are correlated"):
-                    self.assertFalse(wrong in shown + page, wrong)  # without printing the page
+                    self.assertFalse(wrong in shown + page, wrong)  # a failure does not print the page
                 first, constant = page.find("position"), page.find(f"gap {DOES_NOT_VARY}")
                 self.assertGreater(first, 0)
                 self.assertTrue(constant < 0 or constant > first)

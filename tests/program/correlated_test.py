@@ -1,4 +1,4 @@
-"""Measured and correlated errors: forty parts become ten thousand machines, with the same bits however they are run."""
+"""Measured and correlated errors: forty parts become ten thousand machines, with the same bits in every run."""
 
 import json
 import math
@@ -99,7 +99,8 @@ class Correlated(ResumptionTest):
             drawn = numpy.array([machine[name] for machine in machines])
             self.assertGreaterEqual(drawn.min(), values.min() - values.std())
             self.assertLessEqual(drawn.max(), values.max() + values.std())
-            # alpha = 0.001 for Kolmogorov's statistic, and as much for the parts' own steps
+            # Bound of Kolmogorov's statistic for alpha = 0.001, plus one step of the distribution function of 60
+            # machines.
             steps = numpy.abs(numpy.searchsorted(numpy.sort(drawn), numpy.quantile(values, numpy.arange(1, 40) / 40)) / 60
                               - numpy.arange(1, 40) / 40)
             self.assertLess(steps.max(), 1.95 / math.sqrt(60) + 1 / 60)
@@ -107,7 +108,7 @@ class Correlated(ResumptionTest):
         ranks = drawn.argsort(axis=0).argsort(axis=0)
         found = numpy.corrcoef(ranks.T)
         wanted = numpy.corrcoef(numpy.array([hole.argsort().argsort(), height.argsort().argsort()]))[0, 1]
-        # Fisher's transformation with Spearman's 1.03 / sqrt(n - 3), alpha = 0.001
+        # Fisher's transformation of rank correlations: the standard error is 1.03 / sqrt(n - 3), alpha = 0.001.
         self.assertLess(abs(math.atanh(found[0, 1]) - math.atanh(wanted)), 3.29 * 1.03 / math.sqrt(57))
         self.assertLess(abs(found[0, 2]), 0.45)
 
@@ -124,7 +125,7 @@ class Correlated(ResumptionTest):
         self.assertEqual([shapes[names.index(name)] for name in NAMES], ["measured", "measured", "uniform"])
         known = ~numpy.isnan(s1).all(axis=0)
         self.assertEqual([bool(known[names.index(name)]) for name in NAMES], [False, False, True])
-        # of two measured errors that are correlated it is not known, of a uniform one and of normal ones it is
+        # The gradient is unknown for the two measured, correlated errors, and known for uniform and normal ones.
         self.assertEqual([bool(g) for g in numpy.isnan(gradient[[names.index(name) for name in NAMES]])], [True, True, False])
         self.assertEqual(numpy.isnan(gradient).sum(), 2)
         self.assertIn("correlated with others", self.succeeds("show", "out.h5"))
@@ -187,10 +188,11 @@ analysis = {{ kind = "monte-carlo", factors = ["q_1"], samples = 40000, draws = 
             mean, deviation = (file["monte_carlo"][name][at, 0] for name in ("mean", "std"))
             value = file["yield/value"][()]
             self.assertAlmostEqual(file["factors/sigma"][0], 1e-3 * numpy.std(sizes, ddof=1), places=15)
-        # five standard errors of 40 000 machines, whose kurtosis is 8, and the rounding of the expected numbers
+        # Five standard errors of 40 000 machines (the kurtosis is 8), plus the rounding of the expected numbers.
         self.assertAlmostEqual(mean, 0.0168e-3, delta=5 * 0.0527e-3 / 200 + 0.00005e-3)
         self.assertAlmostEqual(deviation, 0.0527e-3, delta=5 * 0.0066 * 0.0527e-3 + 0.00005e-3)
-        # nine of ten parts are within, and of the draws around the tenth, 0.5 mm +- sqrt(3) sigma, those below 0.3 mm
+        # Draws around nine of ten parts keep the limit. Of the draws around the tenth part, in 0.5 mm +- sqrt(3) sigma,
+        # those below 0.3 mm keep it.
         reach = math.sqrt(3) * numpy.std(sizes, ddof=1)
         self.assertAlmostEqual(value, 0.9 + 0.1 * (0.3 - (0.5 - reach)) / (2 * reach), delta=5 * 0.3 / 200)
 

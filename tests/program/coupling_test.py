@@ -1,4 +1,4 @@
-"""A coupling study from its template to tables, as a user takes it through the program."""
+"""A coupling study from its template to tables, with the commands of a user."""
 
 import csv
 

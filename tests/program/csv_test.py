@@ -1,4 +1,4 @@
-"""Tables in and out: exports that lose nothing of the user's, tables that come back as they went, units, names of rows."""
+"""Tables as output and input: exports keep the user's files and can be read again; units; names of rows."""
 
 import csv
 import json
@@ -63,10 +63,10 @@ class Exports(Csv):
         for name in ("a", "b", "a", "a"):
             self.assertEqual(self.exported(f"{name}.h5", "both"), tables[name])
             self.assertEqual(self.listed("both"), (hashes[name], tables[name].keys() - {MANIFEST}))
-        # A table that was changed is the user's, and so are others in the folder.
+        # A table that the user changed belongs to the user, like other files in the folder.
         self.write("both/mine.csv", POSES)
         self.write("both/global.csv", POSES)
-        os.utime(self.folder / "both/global.csv", (time.time() + 1,) * 2)  # a clock may tick too slowly for a test
+        os.utime(self.folder / "both/global.csv", (time.time() + 1,) * 2)  # the clock may be too coarse
         before = {path.name: path.read_bytes() for path in (self.folder / "both").iterdir()}
         done = self.poesy("export", "b.h5", "-d", "both")
         self.assertEqual(done.returncode, 2, done.stderr)

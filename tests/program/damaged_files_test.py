@@ -1,7 +1,7 @@
-"""Files that were cut off or had bits turned over: no command crashes or hangs, and no number changes without a warning.
+"""Files that were truncated or have flipped bits: no command crashes or hangs, and no number changes without a warning.
 
-For every kind of result, for a shard and for a checkpoint. POESY_DAMAGES says how many flips of one to 64 bits each of
-them gets (default 5), and with them a fifth as many truncations; POESY_DAMAGE_SEED which ones.
+Tests each kind of result, a shard and a checkpoint. POESY_DAMAGES: number of damages of each file by flips of 1 to 64
+bits (default 5); a fifth as many truncations are made too. POESY_DAMAGE_SEED selects which damages.
 """
 
 import json
@@ -20,11 +20,12 @@ from resumption import STUDIES, ResumptionTest
 FLIPS = int(os.environ.get("POESY_DAMAGES", "5"))
 TRUNCATIONS = max(1, FLIPS // 5)
 SEED = int(os.environ.get("POESY_DAMAGE_SEED", "1"))
-# What a page says of the run, which the content hash leaves out: in its "What was run", and the solves below its title.
+# Facts about the run on a report page, which the content hash does not cover: in its section "What was run", and the
+# number of solves below the title.
 RUN_FACTS = re.compile(rb"""<tr><th scope="row">(?:date \(UTC\)|machine|processor|threads|ranks|wall time \[s\]|solves|samples|"""
                        rb"""samples per second)</th><td class="long">[^<]*</td></tr>\n|(?<= poses, )[^,;<]* (?:solves|samples)(?=[;<])""")
 CHANGED = b"was changed since it was written"
-# Each kind's study with so few samples or poses that it has a result at once.
+# Replacements that make the study of each kind so small that it ends at once.
 SMALLER = [("samples = 12300", "samples = 60"), ("samples = 62300", "samples = 60"), ("samples = 2100", "samples = 64"), ("samples = 30000", "samples = 3000"),
            ("count = 4000", "count = 20"), ("count = 1500", "count = 20"), ("count = 5000", "count = 30")]
 READERS = [("verify", "r.h5"), ("show", "r.h5"), ("show", "r.h5", "--json"), ("export", "r.h5", "-d", "tables"),

@@ -1,4 +1,4 @@
-"""Commands that must end in time, however busy the machine is."""
+"""Runs commands that must end in time, however busy the machine is."""
 
 import os
 import signal
@@ -6,8 +6,8 @@ import subprocess
 
 from poesy_program import PROGRAM
 
-LONGEST = 60 if os.environ.get("POESY_SANITIZE") else 10  # seconds of a processor
-WAIT = 10  # times as long by the clock: a command that has not ended by then waits for something that never comes
+LONGEST = 60 if os.environ.get("POESY_SANITIZE") else 10  # seconds of processor time
+WAIT = 10  # limit of the wall-clock time in units of LONGEST, for commands that wait for ever
 
 
 def run_in_time(folder, command):

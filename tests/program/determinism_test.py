@@ -1,4 +1,4 @@
-"""The same study gives the same content for any number of threads and any number of repetitions."""
+"""The same study gives the same content for any number of threads and in every repetition."""
 
 import itertools
 

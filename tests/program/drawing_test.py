@@ -1,4 +1,4 @@
-"""A drawing's features and zones: the numbers of another program, and the same draws however a run is divided."""
+"""Features and zones of a drawing, compared with numbers of another program; same draws however a run is divided."""
 
 import csv
 import json
@@ -27,7 +27,8 @@ poses = {{ select = "file", file = "poses.csv" }}
 [analysis]
 {analysis}
 """
-# OTAF (Kramer84/otaf), notebook Ex1_2D_4dof: a part with two faces, which leans on one of them. The second limb holds nothing.
+# From OTAF (Kramer84/otaf), notebook Ex1_2D_4dof: a part with two faces in a pocket. The second limb does not constrain
+# the part.
 POCKET = """\
 format = "poesy-mechanism"
 version = 1
@@ -78,7 +79,8 @@ class Drawing(ProgramTest):
         np.testing.assert_allclose(sigma["rail_lean_y_3"], 6.6666666667e-6, rtol=1e-10)
         np.testing.assert_allclose(sigma["rod_2"], 0.02e-3 / 3, rtol=1e-12)
         expected = np.array([pose["rms_tip"] for pose in EXPECTED["poses"]])
-        # A mean square of a normal has a relative standard error of at most sqrt(2 / samples); alpha = 1e-6.
+        # The mean square of a normal number has a relative standard error of sqrt(2 / samples), and that of a norm at
+        # most this; its root has half of it. alpha = 1e-6.
         self.assertLess(np.abs(rms / expected - 1.0).max(), 5.0 * np.sqrt(2.0 / samples) / 2.0)
 
     def test_worst_case(self):
@@ -112,7 +114,8 @@ class Drawing(ProgramTest):
         self.result("mc", 'kind = "monte-carlo"\ndraws = "per machine"\nsamples = 2000\nlimits = { tip_position = "0.12 mm" }').close()
         tables = json.loads(self.succeeds("show", "mc.h5", "--json"))["tables"]
         rows = next(table for table in tables if table["name"] == "features")["rows"]
-        first = [row["feature"] for row in rows if row["share"] > 0.9 * rows[0]["share"]]  # others are told from the largest
+        # Features whose shares are too close to the largest to be told apart.
+        first = [row["feature"] for row in rows if row["share"] > 0.9 * rows[0]["share"]]
         self.succeeds("report", "mc.h5", "-o", "mc.html")
         advice = re.search(r"what adds most to the scatter of tip_position: (\w+) \(", (self.folder / "mc.html").read_text())
         self.assertIn(advice.group(1), first)
@@ -151,8 +154,9 @@ class Drawing(ProgramTest):
         self.succeeds("merge", "part1.h5", "part2.h5", "-o", "merged.h5")
         self.assertEqual(len({self.content_hash(f"{name}.h5") for name in ("one", "two", "merged")}), 1)
 
-    # Standard deviations of uniform features over those of normals with three sigmas: a location alone, or a lean alone,
-    # 1.5; a distance or a lift alone, root of 3. Features with both zones are not among them.
+    # For each feature, its standard deviation with a uniform distribution divided by that with a normal distribution of
+    # three sigmas: 1.5 for a location or a lean alone, sqrt(3) for a distance or a lift alone. Features with both zones
+    # are not listed.
     UNIFORM = {"face": 3**0.5, "zero": 3**0.5, "cross_b": 1.5, "rod": 3**0.5, "rod_bore": 1.5, "cross_c": 1.5, "hinge_c": 1.5}
     SHAPED = 'kind = "monte-carlo"\ndraws = "per machine"\nsamples = {samples}\nfactors = [{factors}]\nlimits = {{ tip_position = "0.12 mm" }}'
 
@@ -171,7 +175,8 @@ class Drawing(ProgramTest):
                                 for feature, ratio in self.UNIFORM.items() for limb in (1, 2, 3))) for pose in EXPECTED["poses"]]
         np.testing.assert_allclose(found, expected, rtol=1e-9)
         np.testing.assert_array_equal(worst, found)
-        # Squares of uniform errors scatter less than those of normals; alpha = 1e-6.
+        # Squares of uniform errors scatter less than those of normal errors, so this bound of normal errors is safe;
+        # alpha = 1e-6.
         self.assertLess(np.abs(drawn / expected - 1.0).max(), 5.0 * np.sqrt(2.0 / samples) / 2.0)
         self.assertIn("groups that hold whole features", " ".join(self.succeeds("show", "uniform.h5").split()))
 
@@ -220,7 +225,7 @@ class Drawing(ProgramTest):
             """Of a normal, 0.2 mm."""
             return 0.5 * math.erfc(2e-4 / (sigma * math.sqrt(2.0)))
 
-        edge = 0.31e-3 / 6.0  # standard deviation of a face's middle or of its edge
+        edge = 0.31e-3 / 6.0  # standard deviation of the middle or an edge of a face (m)
         largest = f"""
 [errors.override]
 "*_x_?" = {{ distribution = "normal", sigma = "{edge} m" }}
@@ -332,7 +337,7 @@ bounds = ["0.002 mm", "0.2 mm"]
         for feature, expected in (("rail", 0.9779054167276021), ("rod", 0.9973002039367398), ("rod_bore", 0.9888910034617577),
                                   ("face", 0.9973002039367398**2)):
             np.testing.assert_allclose(inside[feature], expected, rtol=1e-9)
-        # The study of the certificate repeats it.
+        # The certificate's study has the same rejects.
         self.succeeds("run", "two_certificate.toml", "-o", "again.h5", "--quiet")
         with h5py.File(self.folder / "again.h5") as file:
             self.assertEqual(file["yield/rejects"][()], rejects)
@@ -376,7 +381,7 @@ bounds = ["0.002 mm", "0.2 mm"]
         self.succeeds("report", "mc.h5", "-o", "mc.html")
         page = (self.folder / "mc.html").read_text(encoding="utf-8")
         self.assertIn("<span>\u2316</span><span>\u23000.05</span><span>A</span><span>B</span></span>", page)
-        self.assertIn("<span>\u2225</span><span>0.01</span><span>A</span></span>", page)  # a face
+        self.assertIn("<span>\u2225</span><span>0.01</span><span>A</span></span>", page)  # zone of a face
 
     def test_measured_parts(self):
         """A feature whose errors are measured has the effect of its parts, not of its zone; the worst case is of the zones."""
@@ -386,7 +391,7 @@ bounds = ["0.002 mm", "0.2 mm"]
             features = [name.decode() for name in file["feature"][:]]
             sigma = dict(zip((name.decode() for name in file["factors/name"][:]), file["factors/sigma"][:]))
             response = [name.decode() for name in file["response"][:]].index("tip_position")
-        times = 2.5  # what the parts scatter more than their zone says
+        times = 2.5  # scatter of the parts, relative to that of their zone
         offsets = np.linspace(-1, 1, 21)
         parts = times * sigma["rod_2"] * offsets / np.std(offsets, ddof=1) + 3e-6
         self.write("parts.csv", "rod [m]\n" + "".join(f"{value!r}\n" for value in map(float, parts)))
@@ -458,7 +463,7 @@ bounds = ["0.002 mm", "0.2 mm"]
     def test_named(self):
         """`models` says in words what the errors of a feature are, and where its axes point."""
         text = self.succeeds("models", "delta.toml")
-        self.assertRegex(text, r"face of limb 1 lifts towards x: [^\n]* down by as much\n")  # its x is the base's
+        self.assertRegex(text, r"face of limb 1 lifts towards x: [^\n]* down by as much\n")  # x of the base
         self.assertRegex(text, r"face of limb 2 lifts towards x: [^\n]*, where x is \(-0.5, 0.866025, 0\) at home\n")
         self.assertRegex(text, r"face of limb 3 lifts towards x: [^\n]*, where x is \(-0.5, -0.866025, 0\) at home\n")
         self.assertIn("leans to x: its far end against its near end, 500 mm apart", text)

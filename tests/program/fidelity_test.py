@@ -1,11 +1,11 @@
-"""One study at both fidelities of a model, and what calibration can remove of its errors."""
+"""One study with both fidelities of a model, and what calibration can remove of its errors."""
 
 import h5py
 import numpy
 
 from poesy_program import ProgramTest, main
 
-#: Errors that the platform does not feel to first order, whatever the limb.
+#: Errors of each limb that have no first-order effect on the platform.
 WITHOUT_EFFECT = ("theta_B_y", "theta_Bp_y", "theta_Bp_z")
 
 
@@ -86,7 +86,7 @@ class Fidelity(ProgramTest):
             drive = result["separation/drive_share"][:]
             together = result["separation/removable_together"][()]
         is_c = numpy.char.startswith(names.astype(str), "c_")
-        self.assertEqual(((published == "compensable") & ~is_c).sum(), 21)  # the paper's 24 with its three scalars c
+        self.assertEqual(((published == "compensable") & ~is_c).sum(), 21)  # the paper has 24, with three scalars c
         self.assertEqual((published == "non-compensable").sum(), 21)
         pure = (published == "compensable") & ~is_c
         numpy.testing.assert_array_equal(removable[pure], 1.0)

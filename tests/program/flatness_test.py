@@ -1,5 +1,5 @@
-"""Limits with two ends, for a share of the poses and on the spread over them: the bed of a delta printer with six rods, held
-against kinematics of its own (NumPy) machine by machine."""
+"""Limits with two ends, for a share of the poses, and on the spread over the poses: the bed of a delta printer with six
+rods, compared with independent kinematics (NumPy) machine by machine."""
 
 import json
 import os
@@ -16,7 +16,8 @@ DATA = Path(os.environ["POESY_DATA"])
 SIGMA, MACHINES = 5e-5, 8_000
 RODS = [f"rod_{k}" for k in range(1, 7)]
 
-# Each limit as a study states it, and whether a machine with these heights [places] keeps it.
+# Each limit as a study states it, with a function that tells which machines keep it. z: [machines x places] heights
+# (m).
 LIMITS = {
     'z = "0.04 mm"': lambda z: (np.abs(z) <= 4e-5).all(axis=1),
     'z = { spread = "0.08 mm" }': lambda z: np.ptp(z, axis=1) <= 8e-5,
@@ -64,7 +65,8 @@ class Flatness(ProgramTest):
 
     def test_yields(self):
         z = bed(np.random.default_rng(3).normal(0.0, SIGMA, (MACHINES, 6)))
-        # The user's two questions (Klipper #2891): 30.9 % of the printers within +-0.04 mm as they are, 63.1 % flat to 0.08 mm.
+        # Two questions of a user (Klipper #2891): 30.9 % of the printers are within +-0.04 mm, and 63.1 % are flat to
+        # 0.08 mm.
         self.assertAlmostEqual((np.abs(z) <= 4e-5).all(axis=1).mean(), 0.309, delta=4.0 * np.sqrt(0.309 * 0.691 / MACHINES))
         self.assertAlmostEqual((np.ptp(z, axis=1) <= 8e-5).mean(), 0.631, delta=4.0 * np.sqrt(0.631 * 0.369 / MACHINES))
         for limit, keeps in LIMITS.items():
@@ -73,7 +75,8 @@ class Flatness(ProgramTest):
             with h5py.File(self.folder / "out.h5") as file:
                 found = file["yield/value"][()]
                 self.assertEqual(file["limits/within"][0], round(found * MACHINES))
-            # Two shares of as many machines each: 4 standard errors, a false alarm in 2200 runs of seven.
+            # Both shares are of MACHINES machines. 4 standard errors: one false alarm in 2200 runs of seven
+            # comparisons.
             self.assertLess(abs(found - own), 4.0 * np.sqrt(2.0 * own * (1.0 - own) / MACHINES), limit)
 
     def test_every_row_is_judged_as_by_own_kinematics(self):
@@ -187,7 +190,7 @@ class Flatness(ProgramTest):
         own = ((z[:, pose] >= -8e-5 - beyond) & (z[:, pose] <= 1.2e-4 + beyond)).mean()
         self.assertAlmostEqual(own, 0.9, delta=4.0 * np.sqrt(2.0 * 0.09 / MACHINES))
         self.assertAlmostEqual(within, share.mean(), delta=4.0 * np.sqrt(2.0 * 0.09 / MACHINES))
-        # Stopped under one limit it does not go on under another, whose numbers it does not have.
+        # A run that stopped under one limit cannot be resumed under another, whose counts it does not have.
         self.poesy("run", "study.toml", "-o", "again.h5", "--quiet", "--max-wall", "0.000001 s")
         self.write("study.toml", study + 'limits = { z = ["-0.08 mm", "0.13 mm"] }\n')
         self.assertEqual(self.poesy("run", "study.toml", "-o", "again.h5", "--quiet", "--resume").returncode, 2)

@@ -1,4 +1,4 @@
-"""The pictures of forces in reports: which limbs are coloured how much, and what the caption says, against the result."""
+"""Compares the pictures of forces in reports with the result: colours of the limbs and numbers in the caption."""
 
 import html
 import re
@@ -21,7 +21,7 @@ errors.angular = { distribution = "normal", sigma = "0.05 deg" }
 ANALYSES = {"sensitivity": 'analysis = { kind = "sensitivity", factors = "deforming", samples = 100 }\n',
             "draws": 'mechanism.load.force = ["30 N", "-20 N", "50 N"]\n'
                      'analysis = { kind = "monte-carlo", draws = "per pose", factors = "deforming", samples = 100 }\n'}
-DIGITS = 2e-3  # of a number with four digits, relative; a width has fewer
+DIGITS = 2e-3  # relative tolerance of the caption's numbers
 NAMES = ("force_1", "force_2", "force_3")
 
 

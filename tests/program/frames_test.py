@@ -1,5 +1,5 @@
-"""Where joints and frames are: `poesy evaluate --frames` against geometry computed here, and the picture in a report
-against `poesy evaluate --frames`."""
+"""The places of joints and frames: `poesy evaluate --frames` compared with geometry computed here, and the picture of a
+report compared with `poesy evaluate --frames`."""
 
 import csv
 import io
@@ -115,7 +115,7 @@ class FramesTest(ProgramTest):
                     for number, wanted in ((1, x), (2, leg / np.linalg.norm(leg)), (3, x), (4, v)):
                         self.parallel(axis(number), wanted)
                     slide = 2
-                moved = (1 - np.linalg.norm(home) / np.linalg.norm(leg)) * leg  # a slide's frame has moved with it
+                moved = (1 - np.linalg.norm(home) / np.linalg.norm(leg)) * leg  # the frame moves with the slide
                 self.near(point("frame", slide), np.array(B) + moved)
 
     def test_3prs_closes(self):
@@ -214,7 +214,7 @@ class FramesTest(ProgramTest):
         pictures = self.check_report("study.toml", (0.0, 0.0, 0.6), ("rx", "ry", "z"))
         at_home = {(joint["data-limb"], joint["data-joint"]): points(joint["data-at"])[0]
                    for joint in pictures.poses[0]["joints"]}
-        for i in range(3):  # as the file has them
+        for i in range(3):  # the points of the file
             turn = rotation("z", 2 * np.pi * i / 3)
             for number, wanted in (("1", (250, 0, 0)), ("2", (250, 0, 0)), ("3", (135, 0, 600))):
                 self.near(at_home[str(i + 1), number], turn @ wanted, DRAWN)
@@ -236,7 +236,7 @@ class FramesTest(ProgramTest):
         html = (self.folder / "r.html").read_text()
         self.assertIn("That of a group is divided evenly among its errors", html)
         shares = [error["share"] for error in Pictures(html).figure["errors"]]
-        self.assertEqual(len(set(shares)), 2)  # of two limbs
+        self.assertEqual(len(set(shares)), 2)  # one share for each of the two limbs
 
 
 if __name__ == "__main__":

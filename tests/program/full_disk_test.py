@@ -1,7 +1,8 @@
-"""A disk that is full, for a checkpoint or for the result: exit code 3, what is missing, and nothing of before is lost.
+"""A full disk while a checkpoint or the result is written: exit code 3, a message with the missing bytes, and older
+files are kept.
 
-The disks are small tmpfs in a mount namespace of the test's own, so they are gone with it; without root, a user
-namespace gives the right to mount. Where neither is allowed, the test is skipped (exit code 77).
+The disks are small tmpfs in a mount namespace of the test, so they end with it. Without root, a user namespace gives
+the right to mount. If neither is allowed, the test is skipped (exit code 77).
 """
 
 import os
@@ -20,7 +21,7 @@ SKIPPED = 77
 PAGE = os.sysconf("SC_PAGE_SIZE")
 EVERY = "0.1 s"
 MISSING = re.compile(r"cannot be written \(No space left on device; needs (\d+) bytes, (\d+) are free\); make room")
-# A second or so: time for checkpoints.
+# These studies take about a second, so there is time for checkpoints.
 LONG_SENSITIVITY = SENSITIVITY.replace("12300", "40300")
 LONG_MONTE_CARLO = MONTE_CARLO.replace("12300", "40300")
 LONG_ALLOCATION = ALLOCATION.replace("30000", "120000")
@@ -69,7 +70,7 @@ class FullDisk(ResumptionTest):
             while room > 0:
                 try:
                     room -= filler.write(bytes(min(room, 16 * PAGE)))
-                except OSError:  # the run has taken some meanwhile
+                except OSError:  # the run has used some of the room meanwhile
                     return
 
     def make_room(self):
@@ -149,7 +150,7 @@ class FullDisk(ResumptionTest):
                 time.sleep(0.001)
             self.fill()
             messages = run.communicate(timeout=120)[1].decode()
-        # Which file found no room depends on how far the run was.
+        # How far the run was decides which file found no room.
         self.expect_full(run.returncode, messages, "out.h5.part" if "out.h5.part: " in messages else "out.h5")
         self.assertTrue(self.newer.exists())
         self.resumes_from_each(expected)
@@ -185,7 +186,7 @@ class FullDisk(ResumptionTest):
     def test_export_says_what_is_in_the_folder(self):
         self.mount("4m")
         quick = SENSITIVITY.replace("samples = 12300", "samples = 100")
-        larger = re.sub("factors = .*", 'factors = "deforming"', quick)  # tables of the same names
+        larger = re.sub("factors = .*", 'factors = "deforming"', quick)  # its tables have the same names
         for name, study in (("a", quick), ("b", larger)):
             self.write("study.toml", study)
             self.succeeds("run", "study.toml", "-o", f"../{name}.h5", "--quiet")

@@ -1,4 +1,4 @@
-"""Errors that grow along the way of a joint, held against closed-form kinematics of three machines."""
+"""Errors in proportion to the travel of a joint, compared with closed-form kinematics of three machines."""
 
 import os
 from pathlib import Path
@@ -151,7 +151,8 @@ class GrowingErrors(ProgramTest):
             unit = file["factors/unit"][0].decode()
         self.assertEqual(unit, "1")
         own = np.sqrt((effects**2).sum(1))
-        # A mean square of a normal has a relative standard error of sqrt(2 / samples): 5 of them, alpha = 6e-7 each.
+        # The mean square of a normal number has a relative standard error of sqrt(2 / samples), its root half of it.
+        # Five standard errors: alpha = 6e-7 each.
         np.testing.assert_allclose(found[1:], own[1:], rtol=5.0 * np.sqrt(0.5 / samples), atol=1e-12)
         with self.run_study('kind = "sensitivity"\nsamples = 4000', "sensitivity.h5") as file:
             index = file["sensitivity/local"][names.index("z")]
@@ -171,7 +172,7 @@ class GrowingErrors(ProgramTest):
             certified, count = (file["allocation/certificate"][name][()] for name in ("yield", "machines"))
         draws = np.random.default_rng(5).normal(0.0, tolerance / 3.0, (200000, 3))
         own = (np.abs(draws @ self.scatter()[..., 2].T).max(1) <= 5e-5).mean()
-        # The first-order map is off by 0.3 % of z at these poses. 4.5 standard errors: alpha = 7e-6.
+        # The first-order map errs by 0.3 % of z at these poses. 4.5 standard errors: alpha = 7e-6.
         self.assertLess(abs(certified - own), 4.5 * np.sqrt(own * (1.0 - own) * (1.0 / count + 1.0 / len(draws))) + 1e-4)
         self.assertGreater(own, 0.985)
         held = 'kind = "monte-carlo"\ndraws = "per pose"\nsamples = 100\nfactors = ["scale_1"]\nbackground = { factors = ["scale_2", "scale_3"], relative = "0.1 %" }'

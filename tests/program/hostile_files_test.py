@@ -1,7 +1,7 @@
-"""Hostile HDF5 files put through the commands that open results: none hangs, crashes, or tells of another file.
+"""Hostile HDF5 files as input of commands that open results: none hangs, crashes, or prints content of another file.
 
-POESY_HOSTILE says how many structures (default 200; 0: all), POESY_HOSTILE_SEED which ones of those that need not be
-refused. A command that takes too long is tried once more, for another program may have had the machine; a few in all.
+POESY_HOSTILE: number of structures to test (default 200; 0: all). POESY_HOSTILE_SEED selects them from those that need
+not be refused.
 """
 
 import os
@@ -32,11 +32,11 @@ analysis = { samples = 10 }
 COMMANDS = [("verify", "r.h5"), ("show", "r.h5"), ("show", "r.h5", "--json"), ("export", "r.h5", "-d", "tables"),
             ("report", "r.h5", "-o", "r.html"), ("tolerances", "r.h5", "--response", "tip_x", "-d", "tolerances"),
             ("replay", "r.h5", "a_x_1", "0", "1")]
-# The same of a mechanism from a file, whose errors and responses have other names.
+# The same commands for a mechanism from a file, whose errors and responses have other names.
 COMMANDS_FROM_FILE = [[{"tip_x": "position", "a_x_1": "delta_1_0_x"}.get(word, word) for word in command]
                       for command in COMMANDS]
 CHANGED = b"was changed since it was written"
-# The secrets as text, as doubles in any decimal unit, and as bytes that were taken for numbers.
+# Traces of the secrets in an output: as text, as numbers in any decimal unit, and as bytes that were read as numbers.
 SIGNS = [MARK.encode(), b"4242424", b"4.242424", b"84,79,80", b"root:x:0"]
 
 

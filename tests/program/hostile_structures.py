@@ -1,10 +1,10 @@
-"""HDF5 files that somebody made to hurt whoever opens them, each a result of poesy with one part replaced.
+"""HDF5 files made to harm whoever opens them. Each is a result of poesy with one part replaced.
 
-structures() lists them. A structure says which sort it is of:
+structures() lists them. Each structure is of one of these sorts:
 
-    outside   reads other files if it is followed: must be refused by name
-    tree      no tree of few levels, or neither groups nor datasets: must be refused by name
-    shape     anything else that is not as poesy writes it: what is shown is poesy's own to decide
+    outside   links to other files: must be refused with the rule in the message
+    tree      too deep, or not only groups and datasets: must be refused with the rule in the message
+    shape     any other part that differs from what poesy writes; what is shown then must come from this file
     text      another study or mechanism (hostile_texts.py): refused, or shown with a warning that it was changed
 """
 
@@ -17,21 +17,21 @@ from typing import Callable
 import h5py
 import numpy as np
 
-MARK = "TOP-SECRET-4242424242"  # what the secret files hold; no output may have it
+MARK = "TOP-SECRET-4242424242"  # the content of the secret files; no output may contain it
 MARKED_NUMBER = 4242424242.0
 NUMBERS = ["sensitivity/local", "sensitivity/global", "sensitivity/count", "poses/alpha", "factors/sigma",
            "tolerances/index", "run/wall_seconds", "solver/not_converged"]
 TEXTS = ["study/text", "factors/name", "factors/unit", "responses/description", "factor", "run/host"]
 TARGETS = [*NUMBERS, *TEXTS]
 GROUPS = ["sensitivity", "poses", "run", "study"]
-BIG = 1 << 29  # elements: 4 GiB of doubles
+BIG = 1 << 29  # number of elements: 4 GiB of doubles
 
 
 @dataclass(frozen=True)
 class Structure:
     name: str
     sort: str
-    change: Callable  # of an open h5py.File and of the Outside
+    change: Callable  # called with the open h5py.File and the Outside
 
 
 class Outside:
@@ -75,7 +75,7 @@ def simple(shape):
     return h5py.h5s.create_simple(shape) if shape else h5py.h5s.create(h5py.h5s.SCALAR)
 
 
-# Values that are elsewhere
+# Values that are stored outside of the file
 
 
 def external(kind, name, pieces=1):

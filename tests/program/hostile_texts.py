@@ -1,7 +1,7 @@
-"""Results of a mechanism from a file whose study or mechanism is another text: one that asks for other files, for more
-than any machine has, or for more levels than a reader should go down.
+"""Results whose study or mechanism is replaced by another text: it names other files, needs more than any machine has,
+or has very many levels.
 
-text_structures() lists them; FROM_FILE is the study of the result that they are made of.
+text_structures() lists them. FROM_FILE is the study of the result whose texts are replaced.
 """
 
 from hostile_structures import Structure
@@ -15,7 +15,7 @@ poses = {{ count = 3 }}
 analysis = {{ samples = 10 }}
 """
 OUTSIDE = ["fifo.h5", "/etc/passwd", "/dev/zero", "secret.txt", "secret.h5", "../../../../etc/passwd", "r.h5", "absent"]
-DEEP = 20000  # levels
+DEEP = 20000  # nesting levels
 MANY = 1 << 20  # bytes
 
 
@@ -63,7 +63,7 @@ def lines(make):
     return "".join(make(k) for k in range(count))
 
 
-# Texts that no reader of any TOML should be hurt by
+# Texts that must not harm any reader of TOML
 ANY_TEXT = {
     "empty": whole(""),
     "no TOML": whole("daemon:x:1:1\n" * 1000),

@@ -1,4 +1,4 @@
-"""A run that is stopped leaves the older result as it was."""
+"""A run that is stopped keeps the older result."""
 
 import signal
 import subprocess

@@ -1,6 +1,6 @@
-"""Runs that are killed at random moments and resumed give what undisturbed runs give.
+"""Runs that are killed at random moments and resumed give the same results as undisturbed runs.
 
-POESY_KILLS says how often (default 20), POESY_KILL_SEED at which moments.
+POESY_KILLS: number of kills (default 20). POESY_KILL_SEED selects the moments.
 """
 
 import os
@@ -14,7 +14,7 @@ from resumption import ADAPTIVE_STUDIES, FROM_FILE, STUDIES, ResumptionTest
 KILLS = int(os.environ.get("POESY_KILLS", "20"))
 TERMINATIONS = max(4, KILLS // 5)
 KILLED = ADAPTIVE_STUDIES | {"from a file": FROM_FILE} | STUDIES
-MOST = 4  # times as many runs, where the machine's speed varies and too few have something to resume when they end
+MOST = 4  # the most kills, relative to the wanted number, if too few runs have a checkpoint
 
 
 class Kill(ResumptionTest):
@@ -51,7 +51,7 @@ class Kill(ResumptionTest):
                     killed += 1
                     taken_up = self.newer.exists() or self.older.exists()
                     resumed += taken_up
-                    # Some are killed again.
+                    # A resumed run may be killed again.
                     code, messages = self.run_and_stop(kind, signal.SIGKILL, *["--resume"] * taken_up, longest=2.0)
                     self.assertIn(code, (0, -signal.SIGKILL), messages)
                 self.assertEqual(self.content_hash(), self.expected[kind])
@@ -69,14 +69,14 @@ class Kill(ResumptionTest):
             n += 1
             kind = self.begin(n)
             with self.subTest(n=n, kind=kind):
-                # A signal that comes before the program listens ends it, with nothing to lose.
+                # A signal that comes before the program handles signals ends it; nothing is lost.
                 code, messages = self.run_and_stop(kind, signal.SIGTERM)
                 self.assertIn(code, (0, 4, -signal.SIGTERM), messages)
                 has_checkpoint = self.newer.exists()
                 stopped += has_checkpoint
                 if code == 4:
                     self.assertIn("interrupted", messages)
-                    # A run that still looks for poses has nothing to keep.
+                    # A run that is still searching for poses has no checkpoint.
                     self.assertNotEqual(has_checkpoint, "before anything was solved" in messages, messages)
                 if code != 0:
                     code, messages = self.run_for(120, *["--resume"] * has_checkpoint)

@@ -1,4 +1,4 @@
-"""The response that tables, reports and templates show first: a limited one, else the tool's, else the platform's."""
+"""The response that tables, reports and templates show first: with a limit, else of the tool, else of the platform."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Limits that a study states: PASS or FAIL, exit code 6, in every way in which a study is run and its result is shown."""
+"""Limits of a study: PASS or FAIL and exit code 6, for all ways to run a study and to show its result."""
 
 import csv
 import json
@@ -124,7 +124,7 @@ class Limits(ProgramTest):
             self.assertAlmostEqual(found, self.value(), delta=1e-12 * found)
         self.assertAlmostEqual(row["limit"], 1e-3, delta=1e-15)
         line = next(line for line in done.stdout.decode().splitlines() if line.startswith("FAIL  "))
-        self.assertIn(line, self.succeeds("show", "study.h5"))  # which ends with 0
+        self.assertIn(line, self.succeeds("show", "study.h5"))  # `show` ends with 0 in spite of the FAIL
 
     def test_too_many_failures_go_first(self):
         study = limited(1e-3).replace("[run]", "max_iterations = 1\nmax_not_converged = 0\n[run]")

@@ -1,4 +1,4 @@
-"""Closed-form kinematics of deltas: three spheres about the ends of the arms or carriages meet in P. SI."""
+"""Closed-form kinematics of deltas: three spheres about the ends of the arms or carriages intersect in P. SI units."""
 
 import numpy as np
 

@@ -1,5 +1,5 @@
-"""Whether indices hold at other sizes of their errors: what a run finds, what is shown of it, and tolerances that do not
-extrapolate in silence."""
+"""Whether indices hold for other sizes of the errors: what a run finds, what is shown, and that `tolerances` does not
+extrapolate without a message."""
 
 import json
 
@@ -7,7 +7,7 @@ import h5py
 import numpy
 from poesy_program import ProgramTest, main
 
-# Of limbs 1 and 3, those that deform, without anything held constant.
+# A study of the errors that deform the mechanism, without a background of constant errors.
 STUDY = """\
 format = "poesy-study"
 version = 1
@@ -80,7 +80,8 @@ class Linearity(ProgramTest):
             if numpy.isnan(found[name]):
                 continue
             change = index / large[name] - 1.0
-            # A few draws tell whether an index changes, and by how much where all is of one order.
+            # Few draws suffice to find whether an index changes. The change itself is accurate if the effect is purely
+            # quadratic.
             self.assertEqual(abs(found[name]) > 0.02, abs(change) > 0.02, name)
             if change < -0.8:
                 quadratic += 1
@@ -135,7 +136,8 @@ class Linearity(ProgramTest):
             self.assertNotIn("changes with size", printed)
 
     def test_tolerances_at_the_size_studied_are_not_refused(self):
-        # One error and its own size: the limit is what it causes.
+        # With one error, the limit is a multiple of the error's effect, so the tolerance is this multiple of the size
+        # studied.
         study = STUDY.replace('"deforming"', '["epsilon_3_4_z"]')
         result = self.result("one", study)
         self.assertLess(self.read(result, "linear_deformation")["epsilon_3_4_z"], -0.5)

@@ -1,5 +1,6 @@
-"""Loads that a study gives in the place of its mechanism's file: forces follow them as statics by hand says, and two
-studies with different loads differ as their loads do. A linear Delta: six rods between balls, three carriages on rails."""
+"""Loads in a study that replace those of the mechanism's file: forces agree with statics computed here, and two
+studies with different loads differ as the loads do. A linear Delta: six rods with ball joints, three carriages on
+rails."""
 
 import os
 import re
@@ -17,7 +18,8 @@ TOOL = np.array([0.0, 0.0, -0.070])
 POSES = np.array([(0.0, 0.0, HEIGHT), (0.05, -0.03, 0.21), (-0.06, 0.04, 0.16)])
 RODS = [(side, k) for side in ("left", "right") for k in (1, 2, 3)]
 
-# Compliances: of a rod between its two balls, and of a rail along and about its axes.
+# Cross-section of a rod (m^2), and compliances of a ball (m/N) and of a rail along (m/N) and about its axes (rad/(N
+# m)).
 AREA = np.pi / 4.0 * (0.008 ** 2 - 0.006 ** 2)
 BALL = 1.0 / 20e6
 RAIL = np.array([1.0 / 40e6, 1.0 / 40e6, 1.0 / 2e6, 1.0 / 15000.0, 1.0 / 15000.0, 1.0 / 9000.0])
@@ -44,7 +46,7 @@ class Statics:
         ends[:, 2] = down[:, 2] + np.sqrt(rod ** 2 - np.sum((ends - down)[:, :2] ** 2, axis=1))
         self.ends, self.rod = ends, rod
         self.along = (down - ends) / rod
-        self.wrenches = np.vstack([self.along.T, np.cross(self.arms, self.along).T])  # a column for each rod
+        self.wrenches = np.vstack([self.along.T, np.cross(self.arms, self.along).T])  # [6 x rods]
 
     def rods(self, force, moment):
         """How hard each rod pushes the effector, under this force and moment at its origin."""
@@ -112,7 +114,7 @@ errors.angular = {{ distribution = "normal", sigma = "0.02 deg" }}
         pushes = statics.rods(force, moment)
         size = tolerance * np.linalg.norm(np.concatenate([force, [weight], own[1]]))
         for (side, k), push in zip(RODS, pushes):
-            # A rod carries nothing but what lies along it: z of its lower ball, before that moves.
+            # A rod carries only a force along its axis, which is the z axis of its lower ball.
             for axis, expected in (("x", 0.0), ("y", 0.0), ("z", push)):
                 self.assertAlmostEqual(found[f"reaction_C_{side}_{k}_f{axis}"][pose], expected, delta=size)
             self.assertAlmostEqual(found[f"force_{side}_{k}"][pose], abs(push), delta=size)
@@ -122,7 +124,7 @@ errors.angular = {{ distribution = "normal", sigma = "0.02 deg" }}
             self.assertAlmostEqual(found[f"force_rail_{k}"][pose], np.linalg.norm(rail[:3]), delta=size)
             for name, value in zip(("fx", "fy", "fz", "mx", "my", "mz"), rail):
                 self.assertAlmostEqual(found[f"reaction_q_rail_{k}_{name}"][pose], value, delta=size)
-        # The sums that need no statics of single rods.
+        # Sums of forces, which can be checked without the statics of single rods.
         lifts = [found[f"reaction_C_{side}_{k}_fz"][pose] * along[2] for (side, k), along in zip(RODS, statics.along)]
         self.assertAlmostEqual(sum(lifts), -force[2], delta=6.0 * size)
         drives = sum(found[f"actuator_q_rail_{k}"][pose] for k in (1, 2, 3))
@@ -138,7 +140,8 @@ errors.angular = {{ distribution = "normal", sigma = "0.02 deg" }}
             rough = self.evaluated(load, "exact")
             for pose in range(len(POSES)):
                 self.assert_follows(found, pose, push + weight, moment, CARRIAGE * GRAVITY, 1e-9)
-                # The load acts at nominal places of parts that give way by some micrometres.
+                # With exact solves the parts give way by some micrometres, while the statics here are of the nominal
+                # places.
                 self.assert_follows(rough, pose, push + weight, moment, CARRIAGE * GRAVITY, 3e-3)
 
     def test_gravity_and_force_apart(self):
@@ -147,7 +150,7 @@ errors.angular = {{ distribution = "normal", sigma = "0.02 deg" }}
         down = np.array([0.0, 0.0, -20.0])
         for pose in range(len(POSES)):
             self.assert_follows(found, pose, down, np.cross([0.01, 0.0, 0.0], down), 0.0, 1e-9)
-        # As on the moon.
+        # The gravity of the moon.
         found = self.evaluated(["gravity = [0, 0, '-1.62 m/s^2']"])
         for pose in range(len(POSES)):
             self.assert_follows(found, pose, np.array([0.0, 0.0, -EFFECTOR * 1.62]), np.zeros(3), CARRIAGE * 1.62, 1e-9)
@@ -200,7 +203,7 @@ errors.angular = {{ distribution = "normal", sigma = "0.02 deg" }}
                 np.testing.assert_allclose(means[1][name] - means[0][name], expected, rtol=0.0, atol=tolerance * size,
                                            err_msg=f"{fidelity} {name}")
                 if fidelity == "first-order":
-                    # The scatter is that of the errors, which no load changes.
+                    # The scatter is caused by the errors alone, so the load does not change it.
                     np.testing.assert_allclose(deviations[1][name], deviations[0][name], rtol=1e-9, atol=1e-9 * size)
 
     def test_the_load_is_part_of_the_result(self):
@@ -209,7 +212,7 @@ errors.angular = {{ distribution = "normal", sigma = "0.02 deg" }}
         told = self.succeeds("check", "study.toml")
         self.assertRegex(told, r'\[mechanism\.load\]\n(.*\n)?gravity = \[.*-9\.81 m/s\^2"?\]')
         self.succeeds("run", "study.toml", "-o", "out.h5", "--quiet")
-        self.study(["force = [0, 0, '500 N']"], 'kind = "evaluate"')  # what the folder now says
+        self.study(["force = [0, 0, '500 N']"], 'kind = "evaluate"')  # the study in the folder now has another load
         told = self.succeeds("replay", "out.h5", "all", "1", "7")
         self.assertIn("status: the same", told)
         value = dict(re.findall(r"^  (\S+) +(\S+)", told, re.MULTILINE))

@@ -1,4 +1,4 @@
-"""A run of more than a day: it is asked about on a terminal, and refused without one, unless --yes is there."""
+"""A run of more than a day asks for confirmation at a terminal. Without one it is refused, except with --yes."""
 
 import sys
 import unittest
@@ -14,7 +14,7 @@ except (ImportError, SystemExit):
 from poesy_program import PROGRAM
 
 STUDY = "".join(line for line in WITH_BACKGROUND.splitlines(True) if not line.startswith("background"))
-# 2e14 solves: 200 days at ten million a second.
+# 2e14 solves take 200 days at ten million per second.
 LONG = STUDY.replace("samples = 1500", "samples = 10000000000000")
 NEEDS_A_TERMINAL = unittest.skipIf(PseudoTerminal is None, "the Debian package python3-pyte is missing")
 
@@ -83,7 +83,7 @@ class LongRun(ProgramTest):
         terminal.read(1.0)
         self.assertNotIn("give --yes", " ".join(terminal.rows()))
         terminal.type("\x03")
-        terminal.process.terminate()  # of no terminal's foreground group
+        terminal.process.terminate()  # the program is not in the terminal's foreground group
         self.assertIn(terminal.finish(), (4, -2, -15))
 
     @NEEDS_A_TERMINAL

@@ -1,5 +1,5 @@
-"""Machines, each one set of errors at all poses: their yield is what a count of the same errors gives; same bits however
-they are run; verdicts and exit codes."""
+"""Machines, i.e. sets of errors that are the same at all poses: the yield is the share counted from the same errors;
+same bits however a study is run; verdicts and exit codes."""
 
 import json
 import statistics
@@ -127,7 +127,8 @@ class Machines(ResumptionTest):
             poses = numpy.array([file[f"poses/{axis}"][:] for axis in axes]).T
         self.assertGreater(linear, 0.99)
         self.assertEqual([row["error"] for row in shares], [names[p] for p in numpy.argsort(-ends[0], kind="stable")])
-        # Independent errors add their mean squares: each alone, at a thousandth of its size, at every pose.
+        # The mean squares of independent errors add up, so each error is solved alone at every pose, at a thousandth of
+        # sigma.
         self.write("poses.csv", "\n".join([",".join(axes)] + [",".join(map(repr, map(float, pose))) for pose in poses]))
         alone = numpy.diag(1e-3 * sigma)
         self.write("errors.csv", "\n".join([",".join(names)] + [",".join(map(repr, map(float, row))) for row in alone]))
@@ -137,7 +138,8 @@ class Machines(ResumptionTest):
         truth = squares / squares.sum()
         numpy.testing.assert_allclose(ends[0], truth, atol=2e-3)
         self.assertTrue(((ends[1] <= truth + 1e-3) & (truth - 1e-3 <= ends[2])).all())
-        # What is certain among all errors (Holm, Student's quantiles are near the normal's) is shown, the rest is one line.
+        # The changes that are certain for all errors together (Holm's test; Student's quantiles are close to normal
+        # ones) are shown, and all others are one line.
         told = (found["change_ci_low"] > 0) | (found["change_ci_high"] < 0)
         self.assertGreater(found["rejects"], 200)
         distance = numpy.abs(found["change"]) / (0.5 * (found["change_ci_high"] - found["change_ci_low"]))
@@ -151,7 +153,8 @@ class Machines(ResumptionTest):
         self.assertIn(f"certain at 95 % for all {tested.sum()} together", text)
         self.assertIsNone(changes[-1]["change"])
         self.assertTrue((found["change_ci_low"] >= -found["value"]).all())
-        # As narrow as a likelihood ratio of normal errors, (z^2 - 1)/10, twice, or narrower.
+        # At most twice as wide as the interval of a likelihood-ratio estimate for normal errors, whose weights are (z^2
+        # - 1)/10.
         half = 0.5 * (found["change_ci_high"] - found["change_ci_low"])
         rejected = found["rejects"] / found["machines"]
         self.assertLess(half.max(), 2 * 1.96 * 0.1 * numpy.sqrt(2 * rejected / found["machines"]))
@@ -164,7 +167,8 @@ class Machines(ResumptionTest):
             self.run_study(study.replace("[analysis]", override + "[analysis]"), output="grown.h5")
             with h5py.File(self.folder / "grown.h5") as file:
                 change = file["yield/value"][()] - found["value"]
-            # Paired: machines that cross the limit, mostly one way. Alpha 1e-3 for three comparisons.
+            # The runs have the same draws, so they differ by the machines that cross the limit, mostly in one
+            # direction. alpha = 1e-3 for three comparisons.
             noise = numpy.hypot(half[p] / 1.96, numpy.sqrt(2 * abs(change) / found["machines"]))
             self.assertAlmostEqual(found["change"][p], change, delta=3.6 * noise, msg=names[p])
         self.succeeds("export", "out.h5", "-d", "tables")

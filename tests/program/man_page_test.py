@@ -1,4 +1,4 @@
-"""The manual page that help2man made: formats without warnings, and tells of every command and option of the program."""
+"""The manual page made by help2man: it formats without warnings and has every command and option of the program."""
 
 import os
 import re

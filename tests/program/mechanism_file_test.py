@@ -1,5 +1,4 @@
-"""Mechanisms from files, as their designers use them: reference cases, everything that a study of one goes through, and
-a result that is complete without the file."""
+"""Mechanisms from files: reference cases, all steps of a study, and results that are complete without the file."""
 
 import csv
 import json
@@ -80,7 +79,8 @@ class MechanismFile(ProgramTest):
                     solver = f'method = "{method}"\n' + (f'metric = "{metric}"\n' if metric else "")
                     if metric == "platform":
                         solver += f"points = {quantities(mechanism['metric_points'])}\n"
-                    # By the platform's metric the reference compares limbs in pairs, to first order the same.
+                    # With the platform metric the reference compares limbs in pairs, which is the same only to first
+                    # order.
                     share = 1e-5 if metric == "platform" else 0.0
                     with self.subTest(mechanism=name, metric=metric, method=method):
                         self.check_cases(name, cases, key, solver, share)
@@ -93,7 +93,7 @@ class MechanismFile(ProgramTest):
         picture = (self.folder / "picture.svg").read_text()
         self.assertIn("<svg", picture)
         self.assertIn("</svg>", picture)
-        self.succeeds("models", "upr2-rpu.toml", "-o", "picture.svg")  # a picture may be replaced
+        self.succeeds("models", "upr2-rpu.toml", "-o", "picture.svg")  # a picture by poesy may be replaced
         self.write("drawing.svg", "<svg>somebody's own</svg>")
         for name, wanted in (("drawing.svg", "would be lost"), ("picture.png", "PICTURE.svg")):
             done = self.poesy("models", "upr2-rpu.toml", "-o", name)
@@ -132,7 +132,8 @@ class MechanismFile(ProgramTest):
     def test_what_calibration_can_remove(self):
         self.study("upr2-rpu")
         text = (self.folder / "upr2-rpu.toml").read_text()
-        self.write("upr2-rpu.toml", text[: text.index("\n[errors]")])  # all errors, those beside the drives among them
+        # Without [errors] the file has all errors, including those along the drives.
+        self.write("upr2-rpu.toml", text[: text.index("\n[errors]")])
         poses = [(-0.25, 0.2, -0.3), (-0.2, -0.3, 0.1)]
         self.write("poses.csv", "z,beta,gamma\n" + "\n".join(",".join(map(str, pose)) for pose in poses) + "\n")
         self.write("study.toml", (self.folder / "study.toml").read_text().replace("count = 4", 'select = "file"\nfile = "poses.csv"'))
@@ -141,7 +142,7 @@ class MechanismFile(ProgramTest):
             factors = list(result["factors/name"].asstr()[:])
             found = {name: result["separation"][name][:] for name in ("effect", "residual", "removable_local")}
             self.assertEqual(set(result["separation/published"].asstr()[:]), {""})
-        points = numpy.array([(0.06, 0, 0), (-0.06, 0, 0), (0, 0.06 - 0.025, 0)])  # where the limbs' last joints are
+        points = numpy.array([(0.06, 0, 0), (-0.06, 0, 0), (0, 0.06 - 0.025, 0)])  # the last joints of the limbs (m)
         drives = [factors.index(name) for name in ("delta_1_3_z", "delta_2_3_z", "delta_3_2_z")]
         for m, by_unit in enumerate(self.displacements_by_unit(factors, points, poses)):
             left = by_unit - by_unit[:, drives] @ numpy.linalg.lstsq(by_unit[:, drives], by_unit, rcond=None)[0]
@@ -169,7 +170,7 @@ class MechanismFile(ProgramTest):
         self.assertGreater((~numpy.isnan(removable)).sum(), 100)
 
     def test_negligible_errors_do_not_stand_in_the_way_of_tolerances(self):
-        # Of the planar 3-RRR, errors along the second link's hinge act with the square of their size, and next to nothing.
+        # In the planar 3-RRR, errors across the second link have a quadratic and almost negligible effect.
         gallery = DATA.parent.parent / "results" / "gallery" / "3-rrr"
         self.write("3-rrr.toml", (gallery / "3-rrr.toml").read_bytes())
         self.write("study.toml", (gallery / "study.toml").read_text().replace("samples = 1000", "samples = 300"))
@@ -192,7 +193,7 @@ class MechanismFile(ProgramTest):
                 at = list(file["response"].asstr()).index("position")
                 rms = math.hypot(file["monte_carlo/overall_mean"][at], file["monte_carlo/overall_std"][at])
             self.assertAlmostEqual(rms / 0.05e-3, 1.0, delta=0.05)
-        # Counted from one of them, all others would be absurdly tight.
+        # With a negligible error as the reference, all other tolerances would be absurdly tight.
         done = self.poesy(*asked, "-d", "none")
         self.assertEqual(done.returncode, 2)
         self.assertIn("or count from another error (--reference)", done.stderr.decode())
@@ -221,7 +222,7 @@ class MechanismFile(ProgramTest):
             joints = file["evaluate/joint_displacements"][()]
         drives = ["q_1_2", "q_2_2", "q_3_2"]
         self.write("drives.csv", table([{d: float(row[names.index(d)]) for d in drives} for row in joints], drives))
-        # The tool is 0.1 m from P along the platform's z, by the rotation vector (rx, ry, 0).
+        # The tool is 0.1 m from P along the platform's z axis, and (rx, ry, 0) is the rotation vector of the platform.
         tips = [{"rx": rx, "ry": ry, "tip_z": z + 0.1 * math.cos(math.hypot(rx, ry))} for rx, ry, z in poses]
         self.write("tips.csv", table(tips, ["rx", "ry", "tip_z"]))
         for name in ("drives", "tips"):

@@ -1,5 +1,6 @@
-"""`poesy check` names the peak of memory that a run has: within -10 % and +40 % of what the system measured. Studies
-whose file is as large as what they find have no more than so many times its bytes in memory, besides the program."""
+"""The peak memory that `poesy check` predicts for a run is within -10 % and +40 % of the measured one. For studies
+with large results, memory is limited to a multiple of the size of the result file, in addition to that of the
+program."""
 
 import os
 import re
@@ -59,14 +60,15 @@ SMALL = {
     "sensitivity": HEAD.format(model="3-prs", fidelity='fidelity = "first-order"', poses=5, kind="sensitivity")
     + 'factors = ["a_x_1"]\nsamples = 100\n',
 }
-# A smaller last unit is kept apart from whole ones, with numbers of its own, and the file has the sum of both.
+# Largest memory of a run without that of the program, in multiples of the size of its result file. A smaller last unit
+# has its own state besides that of whole units, while the file has the sum of both.
 MOST_TIMES_THE_FILE = {"sensitivity": 1.5, "a smaller last unit": 3.0, "two fidelities": 2.2, "cases": 1.5, "coupling": 1.5,
                         "worst cases": 1.5}
-# Accumulators are made of the states of all shards, which stay until the last is taken up.
+# The same for merging. The states of all shards stay in memory until the last one is merged.
 MOST_TIMES_THE_FILE_MERGED = {"sensitivity": 1.5, "a smaller last unit": 3.0}
 
 
-# What is read, and the line that is being written.
+# The same for exporting: what is read, and the line that is being written.
 MOST_TIMES_THE_FILE_EXPORTED = 1.5
 
 

@@ -1,5 +1,5 @@
-"""The deformation by the platform's metric: reference cases, indices that hold at any size, sums that hold, nothing at
-the cap, and that only what asks for it has it."""
+"""The deformation by the platform metric: reference cases, indices that hold at any size, mean squares that add up,
+no solves at the iteration cap, and that only studies that select the metric have it."""
 
 import json
 import math
@@ -77,7 +77,7 @@ class Metric(ProgramTest):
                 group = result["evaluate"]
                 for m, case in enumerate(cases):
                     self.assertLess(group["status"][m, 0], 2)
-                    # The cases compare limbs in pairs, which is the same to first order.
+                    # The cases compare limbs in pairs, which is the same only to first order.
                     for name in RESPONSES:
                         self.assertAlmostEqual(group[name][m, 0], case[name], delta=1e-5 * case[name])
                     largest = np.max(np.abs(case["delta_mu"]))
@@ -85,7 +85,7 @@ class Metric(ProgramTest):
                         np.testing.assert_allclose(group[name][m, 0], case["delta_mu"][pair], rtol=0, atol=1e-5 * largest)
 
     def test_indices_hold_at_any_size(self):
-        # The background stays: what it multiplies is an error of the product's size.
+        # The background has the same size in all studies.
         index, low, high = [], [], []
         for size in (1, 0.1, 0.01):
             with self.result(f"s{size}", study(SENSITIVITY.format(1000), size, 40, BACKGROUND)) as file:
@@ -95,7 +95,7 @@ class Metric(ProgramTest):
                 high.append(file["sensitivity/global_corrected_ci_high"][0])
         for other in (1, 2):
             self.assertTrue(np.all(low[other] <= 1.02 * high[0]) and np.all(high[other] >= 0.98 * low[0]))
-            np.testing.assert_allclose(index[other], index[0], rtol=0.02)  # the draws are the same
+            np.testing.assert_allclose(index[other], index[0], rtol=0.02)  # all studies have the same draws
 
     def test_series_are_solves_but_for_rounding(self):
         normal = [study(SENSITIVITY.format(400), size, 10, BACKGROUND) for size in (0.01, 0.1, 1)]
@@ -136,7 +136,8 @@ class Metric(ProgramTest):
             self.assertLessEqual(np.sum(file["solver/not_converged"][:]), 60 * 1000 / 10_000)
 
     def test_large_errors_near_singular_poses(self):
-        # What cannot be assembled does not depend on the metric, and the method makes no difference by the platform's.
+        # Whether a machine can be assembled does not depend on the metric. With the platform metric, the method has no
+        # effect.
         wide = 'workspace = { z = ["-300 mm", "-60 mm"], beta = ["-1.2 rad", "1.2 rad"], gamma = ["-1.4 rad", "1.4 rad"] }'
         text = study(SENSITIVITY.format(40), 3, 20, BACKGROUND.replace('"1 ', '"3 ')).replace("count = 20", f"count = 20\n{wide}")
         ends = {}
@@ -146,8 +147,8 @@ class Metric(ProgramTest):
                 names = [status.decode() for status in file["status"][:]]
                 ends[name] = dict(zip(names, file["solver/solves_by_status"][:].astype(int).sum(axis=(1, 2))))
         self.assertEqual(ends["platform"], ends["gauss_newton"])
-        self.assertLess(ends["platform"]["iteration_cap"], 10)  # of 20 000
-        # Close to the border a solve may end beside it.
+        self.assertLess(ends["platform"]["iteration_cap"], 10)  # of 20 000 solves
+        # Close to the border of what can be assembled, a solve may end on the other side.
         impossible = ends["published"]["not_assembled"]
         self.assertGreater(impossible, 100)
         self.assertLess(abs(ends["platform"]["not_assembled"] - impossible), 0.1 * impossible)

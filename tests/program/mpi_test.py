@@ -1,6 +1,6 @@
-"""Runs under mpirun give what one process gives, and end cleanly whatever happens to a rank.
+"""Runs under mpirun give the result of one process, and end cleanly whatever happens to a rank.
 
-POESY_RANK_KILLS says how often a rank is killed at a random moment (default 3), POESY_KILL_SEED at which moments.
+POESY_RANK_KILLS: how often a rank is killed at a random moment (default 3). POESY_KILL_SEED selects the moments.
 """
 
 import os
@@ -22,7 +22,7 @@ MPIRUN = shutil.which("mpirun")
 KILLS = int(os.environ.get("POESY_RANK_KILLS", "3"))
 HAS_MPI = os.environ.get("POESY_HAS_MPI") == "ON"
 ENVIRONMENT = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-# Not those whose units are of a kind that is among them.
+# Without studies whose work units are like those of another study.
 FEW_UNITS = {kind: with_few_units(study) for kind, study in STUDIES.items()
            if kind not in ("by series", "uniform errors", "repeated machines")} | ADAPTIVE_STUDIES
 
@@ -55,7 +55,7 @@ class RankTest(ResumptionTest):
     def started_by(run):
         """(folder in /proc, state) of each process that the launcher has started."""
         for folder in Path("/proc").glob("[0-9]*"):
-            with suppress(OSError):  # it has gone
+            with suppress(OSError):  # the process has ended
                 state, parent = (folder / "stat").read_text().rsplit(")", 1)[1].split()[:2]
                 if int(parent) == run.pid:
                     yield folder, state
@@ -106,7 +106,7 @@ class Mpi(RankTest):
                     self.assertEqual(list(self.folder.glob("out.h5.*")), [])
                     (self.folder / "out.h5").unlink()
 
-    of_long_study = None  # the content hash of its result, once it is known
+    of_long_study = None  # content hash of the result of long_study(), after the first run
 
     def long_study(self):
         study = SENSITIVITY.replace("samples = 12300", "samples = 82300")
@@ -153,7 +153,7 @@ class Mpi(RankTest):
                 with self.start(3, "--threads", 1, "--checkpoint-every", "0.01 s") as run:
                     process = self.rank_process(run, rank)
                     time.sleep(chooser.uniform(0.0, seconds[kind]))
-                    with suppress(ProcessLookupError):  # that it ended is no fault
+                    with suppress(ProcessLookupError):  # the rank may have ended
                         os.kill(process, signal.SIGKILL)
                         killed += 1
                     self.wait_after_kill(run)
@@ -231,7 +231,7 @@ class Mpi(RankTest):
             with self.subTest(rank=rank, megabytes=own + more):
                 limit = f"ulimit -v {(own + more) * 1_000_000 // 1024}"
                 done = self.mpirun_after(rank, limit, 2, "--quiet", "--threads", "1")
-                if done.returncode not in (0, 3):  # MPI could not begin, and says so before poesy can
+                if done.returncode not in (0, 3):  # MPI failed to start and says so
                     self.assertIn(b"MPI", done.stderr)
                 self.assertNotIn(b"poesy: internal", done.stderr)
                 self.assertNotIn(b"damaged", done.stderr)

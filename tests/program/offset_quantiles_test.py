@@ -1,18 +1,19 @@
-"""Quantiles of a response with an offset, as a background makes it: those of the scatter about the offset, known in closed
-form, and the same bits however the study is run."""
+"""Quantiles of a response with an offset, e.g. by a background: they are as accurate as those of the scatter about the
+offset, which are known in closed form, and have the same bits however a study is run."""
 
 import h5py
 import numpy
 
 from poesy_program import ProgramTest, main
 
-# The normal distribution's 5 % quantile is 1.644854 standard deviations below its mean, where its density is 0.103136. So the
-# sample's quantile has a standard error of sqrt(0.05 x 0.95 / n) / 0.103136 = 2.1132 / sqrt(n), more than at the median.
-# Of 54 comparisons none is beyond 4.5 of them but with probability alpha = 0.0004.
+# The 5 % quantile of the normal distribution is 1.644854 standard deviations below the mean; the density there is
+# 0.103136. So the quantile of n samples has a standard error of sqrt(0.05 x 0.95 / n) / 0.103136 = 2.1132 / sqrt(n)
+# standard deviations, which is more than that of the median. The probability that any of 54 comparisons exceeds 4.5
+# standard errors is alpha = 0.0004.
 Z = 1.644854
 SAMPLES = 20000
 TOLERANCE = 4.5 * 2.1132 / SAMPLES**0.5
-BOUND = 0.0025  # half of a bucket, in standard deviations
+BOUND = 0.0025  # half the width of a sketch's bucket, in standard deviations
 
 STUDY = """\
 format = "poesy-study"
@@ -42,7 +43,7 @@ class OffsetQuantiles(ProgramTest):
 
     def test_follow_the_scatter(self):
         for draws in ("pose", "machine"):
-            for sigma in ("0.01", "0.0001", "0.000001"):  # the offset is 500, 50 000 and 5 000 000 of them
+            for sigma in ("0.01", "0.0001", "0.000001"):  # the offset is 500, 50 000 and 5 000 000 sigma
                 with self.subTest(draws=draws, sigma=sigma):
                     self.run_study(draws, sigma)
                     with h5py.File(self.folder / "out.h5") as file:

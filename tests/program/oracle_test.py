@@ -1,4 +1,4 @@
-"""`poesy evaluate` reproduces independently computed reference cases; the published symmetries hold in a study."""
+"""`poesy evaluate` reproduces independently computed reference cases, and a study has the published symmetries."""
 
 import json
 import os
@@ -50,7 +50,7 @@ class Oracle(ProgramTest):
         for i in range(4):
             for j in range(4):
                 self.assertLessEqual(low[i], high[j], (names[i], names[j]))
-        # One degree of epsilon_1_1_z does what pi/180 mm of delta_1_1_y does: in SI, 1e-3 m a rad.
+        # 1 deg of epsilon_1_1_z has the effect of pi/180 mm of delta_1_1_y, so 1 rad has that of 1e-3 m.
         self.assertLessEqual(low[4] / 1e-3, high[0])
         self.assertLessEqual(low[0], high[4] / 1e-3)
         self.assertLess(np.max(angular_indices), 1e-10)

@@ -1,6 +1,6 @@
-"""Kinematics of their own for mechanisms of tests/data/mechanisms. Errors are arrays [N] by name; those that are not
-named are zero. `margins` of a mechanism say which machines can be put together at its pose: they are positive, and count by
-how much (m). `displacement` says where others are, at M poses: [M x N x 6]. SI throughout."""
+"""Independent kinematics of mechanisms in tests/data/mechanisms, in SI units. Errors are arrays [N] by name; errors
+without an array are zero. `margins` of a mechanism tell which machines can be assembled at its pose: the margins (m)
+of those are positive. `displacement` is that of the platform at M poses: [M x N x 6]."""
 
 import numpy as np
 
@@ -90,7 +90,7 @@ class ThreeRpr:
             across = np.sqrt(np.maximum(legs[0] ** 2 - along ** 2, 0.0))
             unit = between / distance[..., None]
             square = np.stack([-unit[..., 1], unit[..., 0]], -1)
-            # Of the two places the one on the side where the nominal place is.
+            # Of both intersections, the one on the side of the nominal place.
             side = np.sign(np.sum((place - centres[0]) * square, axis=-1))
             found = centres[0] + along[..., None] * unit + (side * across)[..., None] * square
             return np.linalg.norm(found - centres[2], axis=-1) - legs[2]
@@ -310,7 +310,7 @@ class BellCrank:
 
     names = ["arm_x", "arm_y", "forearm", "lower_rod", "lower_across", "upper_rod", "upper_across", "pin_x", "pin_y"]
     arm, forearm, short = 0.040, 0.060, 0.010
-    low, high = 0.010 * np.exp(1j * np.radians(195.0)), 0.010 * np.exp(1j * np.radians(75.0))  # the crank's pins at home
+    low, high = 0.010 * np.exp(1j * np.radians(195.0)), 0.010 * np.exp(1j * np.radians(75.0))  # the pins at home (m)
 
     def wrist(self, angles):
         point = self.arm * np.exp(1j * angles[:, 0]) + self.forearm * np.exp(1j * angles[:, 1])
@@ -332,7 +332,7 @@ class BellCrank:
         found = []
         for first, second in angles:
             elbow = (self.arm + e["arm_x"] + 1j * e["arm_y"]) * np.exp(1j * first)
-            # The forearm's drive holds its angle with the arm.
+            # Errors of the arm do not change the direction of the forearm.
             wrist = elbow + (self.forearm + e["forearm"]) * np.exp(1j * second)
             pin = self.low + e["pin_x"] + 1j * e["pin_y"]
             crank = self.angle(pin, elbow, self.low, np.hypot(self.arm + e["lower_rod"], e["lower_across"]), 0.0)

@@ -1,4 +1,4 @@
-"""`poesy evaluate` without --poses: errors of a table at the poses that the study itself selects."""
+"""`poesy evaluate` without --poses: the errors of a table at the poses that the study selects."""
 
 import h5py
 import numpy as np
@@ -44,7 +44,7 @@ class OwnPoses(ProgramTest):
         np.testing.assert_array_equal(poses, expected)
         self.table(expected)
         np.testing.assert_array_equal(values, self.evaluated("--poses", "poses.csv")[0])
-        # Poses of a table go before those of the study.
+        # Poses of a table replace those of the study.
         self.table(expected[:2])
         np.testing.assert_array_equal(values[:2], self.evaluated("--poses", "poses.csv")[0])
 
@@ -58,7 +58,7 @@ class OwnPoses(ProgramTest):
         pairs = self.evaluated("--paired", study="below/study.toml")[0]
         np.testing.assert_array_equal(pairs.ravel(), np.diag(values))
         message = self.refusal("evaluate", "below/study.toml", "--errors", "errors.csv", "-o", "below/poses.csv")
-        self.assertIn("below/poses.csv", message)  # is not replaced by the result
+        self.assertIn("below/poses.csv", message)  # the result must not replace the poses
 
     def test_along_the_file_of_a_trajectory(self):
         self.write("way.toml", TRAJECTORY)
@@ -80,7 +80,7 @@ class OwnPoses(ProgramTest):
         self.write("empty.toml", STUDY.replace("count = 6\n", ""))
         self.assertIn("empty.toml:5:1: key 'count' is missing in [poses]", self.refusal("evaluate", "empty.toml", *arguments))
         self.assertIn("3 rows of errors for 6 poses", self.refusal("evaluate", "study.toml", *arguments, "--paired"))
-        # With a table of poses the study needs none.
+        # With a table of poses the study need not have poses.
         self.table([[-0.2, 0.1, 0.1]])
         self.succeeds("evaluate", "none.toml", "--poses", "poses.csv", *arguments, "--quiet")
 

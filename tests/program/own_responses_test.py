@@ -1,4 +1,4 @@
-"""Responses of a study's own: every kind of study knows them, and the numbers are those of what they are formed of."""
+"""Responses that a study defines: every kind of study has them, with values that follow from other responses."""
 
 import json
 

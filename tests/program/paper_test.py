@@ -1,4 +1,4 @@
-"""What a paper takes from a result: tables as LaTeX, and the method in words."""
+"""What a paper uses of a result: tables in LaTeX, and a description of the method."""
 
 import json
 import re
@@ -42,7 +42,7 @@ identical_limbs = [1, 2, 3]
 each = true
 cost = { law = "reciprocal", b = 1, unit = "mm" }
 """
-# What LaTeX has without packages, the rules of booktabs, and a word of array.
+# The commands that tables may use: those of LaTeX without packages, the rules of booktabs, and one command of array.
 COMMANDS = {"begin", "end", "centering", "caption", "label", "toprule", "midrule", "bottomrule", "par", "footnotesize",
             "begingroup", "endgroup", "setlength", "tabcolsep", "endhead", "endfoot", "times", "textbar", "textless",
             "textgreater", "textbackslash", "char", "O", "pm", "mu", "infty", "fontsize", "selectfont", "raggedright", "arraybackslash",
@@ -126,7 +126,7 @@ class Paper(ProgramTest):
         self.assertIn("Effect of each error on angular\\_deformation", text)
         self.assertIn("index $\\times$ sigma", text)
         self.assertIn("not converged, published\n", text.split("\\begin{table}")[0])
-        self.assertNotIn("published", text.split("\\begin{table}")[1])  # neither the column nor the note on it
+        self.assertNotIn("published", text.split("\\begin{table}")[1])  # neither as a column nor in a note
         self.assertIn("low, high: its 95 \\% interval", text)
         whole = json.loads(self.succeeds("show", "study.h5", "--json"))["tables"]
         self.assertTrue(any("published: " in note for table in whole for note in table["notes"]))
@@ -266,7 +266,7 @@ class Paper(ProgramTest):
         released = re.search(r'^date-released: "(\d+)-', (GALLERY.parents[1] / "CITATION.cff").read_text(), re.M)
         self.assertIn(f"year = {{{released[1]}}}", words)
         self.assertIn("doi = {10.1093/biomet/26.4.404}", words)
-        self.assertNotIn("relative: ", words)  # no error is
+        self.assertNotIn("relative: ", words)  # the study has no relative errors
         done = self.poesy("show", "study.h5", "study.h5", "--method")
         self.assertEqual(done.returncode, 2)
         self.assertIn(b"--method describes one result", done.stderr)

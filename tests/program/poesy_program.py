@@ -1,4 +1,4 @@
-"""What the tests of the program share: running it, and a study that is quick to solve."""
+"""Shared by the tests of the program: running it, and a study that is quick to solve."""
 
 import functools
 import os
@@ -13,7 +13,7 @@ from pathlib import Path
 PROGRAM = os.environ["POESY_PROGRAM"]
 GALLERY = Path(__file__).resolve().parents[2] / "results/gallery"
 MECHANISMS = Path(__file__).resolve().parents[1] / "data/mechanisms"
-AN_OLDER_RESULT = "poesy-result: an older one"  # what may be replaced
+AN_OLDER_RESULT = "poesy-result: an older one"  # begins like a result, so poesy may replace it
 
 EACH_A_PART = """\
 [[analysis.parts]]

@@ -1,4 +1,4 @@
-"""A search for poses that takes long: it says how far it is, hears signals, leaves nothing behind, and gives up in time."""
+"""A long search for poses: it shows its progress, obeys signals, leaves no files behind, and gives up in time."""
 
 import json
 import re
@@ -8,7 +8,8 @@ import subprocess
 from poesy_program import GALLERY, PROGRAM, STUDY, ProgramTest, main
 
 LINE = re.compile(r"looking for poses: 0 of 10000000 found, \d+ candidates")
-# Ten million points of a grid, none of which keeps the limit; a mechanism from a file takes a while for each.
+# A search over ten million grid points, none of which keeps the limit. It is slow, because the mechanism is from a
+# file.
 NOWHERE = f"""\
 format = "poesy-study"
 version = 1
@@ -21,7 +22,7 @@ limits = {{ q_1_1 = ["300 deg", "310 deg"] }}
 factors = ["delta_1_1_x"]
 samples = 10
 """
-# Nine points of a grid, of which four are out of reach.
+# A grid of nine points; four of them are out of reach.
 REACH = f"""\
 format = "poesy-study"
 version = 1
@@ -29,7 +30,7 @@ mechanism.file = "{GALLERY / "3-rrr/3-rrr.toml"}"
 poses = {{ select = "grid", count = {{ x = 3, y = 3, phi = 1 }}, workspace = {{ x = ["-0.1 m", "0.1 m"], y = ["-0.1 m", "0.1 m"], phi = ["-1 deg", "1 deg"] }} }}
 analysis = {{ kind = "monte-carlo", factors = ["delta_1_1_x"], samples = 10 }}
 """
-# What no pose keeps.
+# A study with a limit that no pose keeps.
 IN_VAIN = STUDY.replace("count = 6", 'select = "interior"\ncount = 20\nlimits = { q_1_3 = ["5 m", "6 m"] }')
 
 

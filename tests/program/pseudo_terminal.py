@@ -1,4 +1,4 @@
-"""A terminal without a window: runs a program in it, and says what a person would see (python3-pyte)."""
+"""A terminal without a window: runs a program in it, and tells what a person would see (python3-pyte)."""
 
 import fcntl
 import os
@@ -48,7 +48,7 @@ class PseudoTerminal:
                 return True
             try:
                 chunk = os.read(self.master, 65536)
-            except OSError:  # nobody holds the other end any more
+            except OSError:  # the other end is closed
                 chunk = b""
             if not chunk:
                 return False

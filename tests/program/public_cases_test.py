@@ -1,5 +1,5 @@
-"""Questions of users from public sources (threads, published tables, papers), said in the words of the program: a mechanism
-and a study of at most 40 lines together, held against kinematics of its own (NumPy)."""
+"""Questions of users from public sources (threads, published tables, papers), stated as a mechanism and a study of
+at most 40 lines together, and compared with independent kinematics (NumPy)."""
 
 import h5py
 import numpy as np
@@ -10,7 +10,8 @@ from poesy_program import ProgramTest, main
 DISPLACEMENT = ("x", "y", "z", "theta_x", "theta_y", "theta_z")
 ROUND = np.radians(range(0, 360, 60))
 BED = np.array([(0.0, 0.0, 0.0)] + [(0.05 * np.cos(a), 0.05 * np.sin(a), 0.0) for a in ROUND])
-# A share of this many machines is compared with one of as many that NumPy draws, within 3.9 standard errors: alpha is 1e-4.
+# The share of good machines is compared with that of as many machines drawn by NumPy, within 3.9 standard errors: alpha
+# = 1e-4.
 MACHINES = 20_000
 
 
@@ -53,7 +54,7 @@ class Case(ProgramTest):
         self.assertLess(abs(found - own), 3.9 * np.sqrt(2.0 * own * (1.0 - own) / machines), (found, own))
 
 
-# Klipper3d/klipper #2810, #615, Smoothieware #713: a delta printer whose rods come in pairs, a pair on each carriage.
+# From Klipper3d/klipper #2810 and #615, and Smoothieware #713: a delta printer with a pair of rods on each carriage.
 PRINTER = """\
 format = "poesy-mechanism"
 version = 1
@@ -153,7 +154,7 @@ class OneSided(Case):
         own = (np.abs(z) <= 6e-5).all(axis=0).mean()
         self.assertAlmostEqual(own, 0.193, delta=0.01)
         self.assert_share(self.yield_of(), own)
-        # About the middle of the limits, with their width as scatter, they look good.
+        # With the same width but symmetric about zero, the errors would be harmless.
         text = (self.folder / "study.toml").read_text()
         self.assertGreater(self.yield_of(text.replace('limits = ["-0.1 mm", 0]', 'half_width = "0.05 mm"')), 0.98)
 
@@ -184,7 +185,7 @@ class FlatBed(Case):
             self.assert_share(self.yield_of(study), own.mean())
 
 
-# spacetelescope/webbpsf #409: the hexapod of a mirror (lsst-ts/ts_mthexapod), whose drives have steps of 10 um.
+# From spacetelescope/webbpsf #409: a mirror's hexapod (lsst-ts/ts_mthexapod, mm) whose drives have steps of 10 um.
 FIXED = [(0, 1701.8, 607.3), (-1542.35, -719.21, 607.3), (1542.35, -719.21, 607.3), (493.79, 1460.49, 228.6),
          (-1256.87, -419.29, 228.6), (1256.87, -419.29, 228.6)]
 MOVING = [(0, 1701.8, 114.3), (-1542.35, -719.21, 114.3), (1542.35, -719.21, 114.3), (0.79, 1460.49, 228.6),
@@ -232,7 +233,8 @@ class Steps(Case):
             self.assert_share(self.yield_of(study), own)
 
 
-# Position zones of ISO 1101 of the balls on the effector: of the axes of their bores, square to it.
+# The printer with position zones (ISO 1101) of the balls on the effector. The zones are of bore axes perpendicular to
+# the effector.
 SEATS = PRINTER.replace(PRINTER[PRINTER.index("errors ="):PRINTER.index("[platform]")], "").replace('/2", 0] } ]\n', """\
 /2", 0] } ]
 features = [ { name = "seat", joint = "C", part = "after", kind = "axis", z = "z", x = "x", length = "10 mm", position = { zone = "0.1 mm", datums = "A" } } ]
@@ -291,7 +293,7 @@ class RoundZone(Case):
             self.assertEqual(file["yield/machines"][()] - file["yield/rejects"][()], good.sum())
 
 
-# Klipper config/example-rotary-delta.cfg, #3339, #1610.
+# A rotary delta, from Klipper's config/example-rotary-delta.cfg, #3339 and #1610.
 ARMS = """\
 format = "poesy-mechanism"
 version = 1
@@ -377,7 +379,7 @@ limits = {{ bowl = ["-0.06 mm", "0.07 mm"] }}
         own = RotaryDelta().displacement(self.PLACES, *(rows[:, kind] for kind in range(4)))
         np.testing.assert_allclose(np.stack([x, y, z], -1), own, rtol=0.0, atol=1e-12)
         np.testing.assert_allclose(bowl, own[..., 2] - own[0, :, 2], rtol=0.0, atol=1e-12)
-        # The answers of the case, in um, in the middle and 50 mm beside it: shoulders 1 mm outwards, and longer rods.
+        # The answers of the case (um), in the middle and 50 mm off: shoulders 1 mm outwards, and rods 1 mm longer.
         for row, middle, edge in ((0, 655, 606), (2, -1193, -1179)):
             self.assertEqual((round(1e6 * z[0, row]), round(1e6 * z[7, row])), (middle, edge))
 
@@ -431,7 +433,7 @@ class GearRatio(Case):
         self.assert_share(self.yield_of(study.replace('bowl = ["-0.06 mm", "0.07 mm"]', 'z = "0.2 mm"')), own)
 
 
-# jlane1590/machinekit-files, modparakins.h: numbers in inches.
+# From jlane1590/machinekit-files, modparakins.h (inches).
 FEET = [(1.850, 0), (1.102, 0), (-0.925, 1.602), (-0.551, 0.954), (-0.925, -1.602), (-0.551, -0.954)]
 BALLS = [(1.207, 1.012), (0.123, -0.698), (-1.480, 0.539), (0.543, 0.456), (0.274, -1.551), (-0.666, 0.243)]
 CARRIAGES = """\
@@ -484,7 +486,7 @@ class Inches(Case):
             np.testing.assert_allclose(of_pose[:, 3:], rotation_vectors(turned @ rotation.T), rtol=0.0, atol=1e-12)
 
 
-# Caro, Wenger, Bennis, Chablat (arXiv 0708.4324).
+# The Orthoglide, from Caro, Wenger, Bennis, Chablat (arXiv 0708.4324).
 ORTHOGLIDE = """\
 format = "poesy-mechanism"
 version = 1
@@ -552,14 +554,16 @@ limits = {{ position = "0.25 mm" }}
         with h5py.File(self.folder / "out.h5") as file:
             at = list(file["responses/name"].asstr()).index("position")
             rms, shares = file["monte_carlo/rms"][at], file["yield/mean_square_share"][at]
-        # The legs are alike on the diagonal. Shares are fitted to the machines, each within a hundredth.
+        # On the diagonal all legs have equal shares. The shares are estimated from the machines, so the tolerance is
+        # 0.01.
         np.testing.assert_allclose(shares, 1.0 / 3.0, atol=0.01)
         self.assertEqual(np.argmin(rms), 3)
-        # At the isotropic pose a leg moves the platform by its own error: three legs by sqrt(3) sigma, within 3.9 standard errors.
+        # At the isotropic pose each leg moves the platform by its own error, so three legs by sqrt(3) sigma; 3.9
+        # standard errors.
         self.assertLess(abs(rms[3] / (1e-4 * np.sqrt(3.0)) - 1.0), 3.9 / np.sqrt(6.0 * MACHINES))
 
 
-# An alignment stage as it is sold: drives U and V along x, W along y, and a guide across each of them.
+# A common alignment stage: drives U and V along x, W along y, each with a guide perpendicular to it.
 STAGE = """\
 format = "poesy-mechanism"
 version = 1
@@ -613,7 +617,7 @@ limits = {{ x = ["-0.4 um", "0.5 um"], theta_z = "2 arcsec" }}
         found = []
         for nominal in self.POSES:
             at = bearings(nominal[None])[0]
-            # The guides' middles: moved by the drives alone.
+            # The middles of the guides, which only the drives move.
             middles = np.array([(at[0, 0], homes[0, 1]), (at[1, 0], homes[1, 1]), (homes[2, 0], at[2, 1])])
             pose = np.tile(nominal, (len(leans), 1))
             for _ in range(6):

@@ -1,4 +1,4 @@
-"""results/2upr-rpu-sensitivity: its files are what the program finds, by both metrics, and its page says their numbers."""
+"""results/2upr-rpu-sensitivity: the program reproduces its files with both metrics, and its page has their numbers."""
 
 import csv
 import math
@@ -54,7 +54,7 @@ class PublishedStudy(ProgramTest):
             column = f"{RESPONSES[name]}_corrected [m per m or rad]"
             self.assertEqual(list(found), list(wanted))
             for error, row in wanted.items():
-                # On another kind of processor other draws may be those that do not converge: some 1e-5 of them.
+                # About 1e-5 of the draws do not converge; on another type of processor these may be other draws.
                 self.assertTrue(math.isclose(found[error][column], row[column], rel_tol=1e-3, abs_tol=1e-10), (name, error))
         shown = self.succeeds("show", "platform.h5", "published.h5").splitlines()
         stored = (STUDIES / "rankings.txt").read_text(encoding="utf-8").splitlines()

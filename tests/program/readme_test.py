@@ -1,5 +1,5 @@
-"""README.md: its study runs and is judged, its rankings are those of the published study by both metrics, and it is
-short."""
+"""README.md: its study runs and has a verdict, its rankings are those of the published study with both metrics, and
+it is short."""
 
 import re
 from pathlib import Path

@@ -1,5 +1,5 @@
-"""The reference of study files in the repository is the one that the program prints; templates are short, or explain
-every key, and mean the same."""
+"""The reference of study files in the repository is the one that the program prints. Templates are short or explain
+every key, and both forms mean the same."""
 
 from pathlib import Path
 
@@ -35,7 +35,7 @@ class Reference(ProgramTest):
             for kind in KINDS:
                 done = self.poesy("template", model, kind)
                 if done.returncode == 2 and (kind in ("identification", "coupling")):
-                    continue  # of the mechanism no such question can be asked
+                    continue  # the mechanism does not support this kind
                 self.assertEqual(done.returncode, 0, done.stderr)
                 count += 1
                 yield model, kind, done.stdout.decode(), model in listed
@@ -49,7 +49,7 @@ class Reference(ProgramTest):
                 self.assertTrue(all(line.strip() for line in lines))
                 for line in lines[1:]:
                     self.assertLessEqual(line.count("  # "), 1)
-                    if len(line) > 120:  # ranges, limits or groups of a mechanism of many coordinates or long names
+                    if len(line) > 120:  # for mechanisms with many coordinates or long names
                         self.assertRegex(line, "^(workspace = |limits = |  { )")
                 self.assertIn("poesy template --full", text)
                 if is_listed:

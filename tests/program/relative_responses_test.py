@@ -1,5 +1,6 @@
-"""A printer that is zeroed in the middle: its height over the bed less its height there, of the same machine. What is right
-is computed from the rods alone. Named points and responses of a mechanism's file, and steps from pose to pose."""
+"""A printer that is zeroed in the middle: its height over the bed minus that in the middle, of the same machine.
+Expected values are computed from the rods. Named points and responses of a mechanism's file, and steps from pose to
+pose."""
 
 import json
 import os
@@ -181,7 +182,7 @@ class RelativeResponses(ProgramTest):
         self.assertIn(">nozzle<", (self.succeeds("models", "delta6.toml", "-o", "p.svg"), (self.folder / "p.svg").read_text())[1])
         self.succeeds("report", "s.h5", "-o", "s.html")
         shown = json.loads(self.succeeds("show", "s.h5", "--json"))
-        # The resolved study gives the same from the file's text that is kept.
+        # The resolved study has the mechanism file's text, so its result is the same.
         with h5py.File(self.folder / "s.h5") as file:
             self.write("again.toml", file["study/text"][()].decode())
         self.succeeds("run", "again.toml", "-o", "again.h5", "--quiet")

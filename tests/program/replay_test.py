@@ -1,4 +1,4 @@
-"""Failed samples are addresses that replay, and too large a share of them is exit code 5 with the result kept."""
+"""Failed samples are listed and can be replayed. If there are too many, the exit code is 5 and the result is kept."""
 
 import re
 
@@ -7,7 +7,7 @@ import numpy
 
 from poesy_program import ProgramTest, main
 
-#: Large errors and few iterations of the published scheme: many samples do not converge.
+#: A study in which many samples do not converge: large errors, and few iterations of the published scheme.
 STUDY = """\
 format = "poesy-study"
 version = 1

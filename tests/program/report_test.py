@@ -1,4 +1,4 @@
-"""Reports as a user makes them: names, refusals, two results, and the same numbers as `poesy show --json`."""
+"""Reports from the command line: file names, refusals, two results, and the same numbers as `poesy show --json`."""
 
 import json
 import os
@@ -158,7 +158,7 @@ class Report(ProgramTest):
         found = any(shutil.which(name) for name in ("chromium", "chromium-browser", "google-chrome"))
         if not found:
             self.skipTest("no Chromium")
-        for _ in range(2):  # its own PDF is replaced
+        for _ in range(2):  # the second time it replaces its own PDF
             self.assertEqual(self.succeeds("report", "r.h5", "-o", "r.pdf"), "r.pdf\n")
             pdf = (self.folder / "r.pdf").read_bytes()
             self.assertTrue(pdf.startswith(b"%PDF-"))
@@ -207,7 +207,7 @@ class Report(ProgramTest):
                                    env=os.environ | environment, start_new_session=True)
         while not (self.folder / "id").exists() or not (self.folder / "id").read_text().endswith("\n"):
             time.sleep(0.02)
-        os.killpg(started.pid, signal.SIGINT)  # as Ctrl-C does
+        os.killpg(started.pid, signal.SIGINT)  # like Ctrl-C
         self.assertIn(b"is not written", started.communicate(timeout=60)[1])
         self.assertEqual(started.returncode, 4)
         with self.assertRaises(ProcessLookupError):

@@ -1,4 +1,4 @@
-"""What is resumed and what is refused, and what stays when a checkpoint is damaged or finds no room."""
+"""Which runs are resumed and which are refused, and which files stay if a checkpoint is damaged or the disk is full."""
 
 import os
 import resource
@@ -54,7 +54,7 @@ class Resume(ResumptionTest):
         self.write("study.toml", SENSITIVITY.replace("12300", "100000000"))
         command = [PROGRAM, "run", "study.toml", "-o", "out.h5", "--yes"]
         for first in (signal.SIGINT, signal.SIGTERM):
-            # Both signals are pending when the program is next scheduled, or the first one ends it in time.
+            # Either both signals are pending when the program is scheduled next, or the first one ends it in time.
             with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE) as run:
                 with self.assertRaises(subprocess.TimeoutExpired):
                     run.communicate(timeout=1.0)
@@ -125,7 +125,7 @@ class Resume(ResumptionTest):
                 longest = study.replace("5300", "7600")
                 expected = self.undisturbed(longest)
                 self.write("study.toml", study)
-                self.stop_early("--threads", 1)  # one thread solves few of the study's units before it stops
+                self.stop_early("--threads", 1)  # one thread has solved only few units when it stops
                 for samples in ("6500", "7600"):
                     self.write("study.toml", study.replace("5300", samples))
                     self.stop_early("--resume", "--threads", 1)
@@ -216,7 +216,7 @@ class Resume(ResumptionTest):
         self.older.unlink(missing_ok=True)
         done = self.poesy("run", "study.toml", "-o", "out.h5", "--quiet")
         self.assertIn(b"out.h5.part: holds an earlier run", done.stderr)
-        self.assertNotIn(b"out.h5.part.1", done.stderr)  # there is none to be removed
+        self.assertNotIn(b"out.h5.part.1", done.stderr)  # only files that exist are named
 
     def test_bad_times(self):
         self.write("study.toml", SENSITIVITY)
@@ -246,7 +246,7 @@ class Resume(ResumptionTest):
                 done = self.resume("--max-wall", "0.1 s")
                 self.assertEqual(done.returncode, 4, done.stderr)
                 self.assertIn(b"out.h5.part.1", done.stderr)
-                # The sound one of before is still there.
+                # The older, intact checkpoint is still there.
                 self.assertEqual(self.older.read_bytes(), sound[self.older.name])
                 self.assertEqual(self.resume_to_end(), expected)
 

@@ -1,4 +1,4 @@
-"""What the tests of checkpoints share: a study of each kind that is under way for a second or so, and stopping it."""
+"""Shared by the tests of checkpoints: for each kind, a study that takes about a second, and stopping its run."""
 
 import os
 import re
@@ -11,7 +11,7 @@ import h5py
 
 from poesy_program import GALLERY, MECHANISMS, PROGRAM, ProgramTest
 
-# A sanitizer takes some twenty times as long. With fewer poses the program does the same otherwise.
+# A sanitizer takes about twenty times as long, so there are fewer poses.
 POSES = 8 if os.environ.get("POESY_SANITIZE") else 16
 HEAD = """\
 format = "poesy-study"
@@ -48,9 +48,9 @@ samples = 12300
 MACHINES = MONTE_CARLO.replace("per pose", "per machine") + """\
 limits.linear_deformation = "0.5 mm"
 """
-# The gradient of their yield takes a linear map, and looks at the machines once more at the end.
+# The yield gradient of uniform errors uses a linear map, and a second pass over the machines at the end.
 UNIFORM = MACHINES.replace('"normal", sigma = "1 mm"', '"uniform", half_width = "1 mm"')
-# Whose responses are those of two poses.
+# Responses that are differences between two poses.
 RELATIVE = f"""\
 format = "poesy-study"
 version = 1
@@ -130,7 +130,7 @@ poses = {{ count = {POSES * 5 // 4} }}
 errors = {{ linear = {{ distribution = "normal", sigma = "0.1 mm" }} }}
 analysis = {{ kind = "sensitivity", samples = 12300 }}
 """
-# Of a mechanism that its file describes: the file's text is in checkpoints and in the result.
+# A mechanism from a file. The text of the file is part of checkpoints and of the result.
 FROM_FILE = HEAD.replace('model = "2upr-rpu"', f'file = "{GALLERY / "3-rrr/3-rrr.toml"}"') + """\
 [poses]
 count = 3
@@ -139,15 +139,16 @@ kind = "sensitivity"
 factors = "in-plane"
 samples = 2300
 """
-# Of which some errors are drawn anew at each pose, and some have a mean.
+# Machines with some errors that are drawn anew at each pose, and some that have a mean.
 REPEATED = MACHINES.replace("[solver]", """\
 [errors.override]
 "delta_1_*" = { distribution = "uniform", half_width = "1 mm", draws = "per pose" }
 "epsilon_2_*" = { distribution = "normal", sigma = "0.2 deg", mean = "0.1 deg", draws = "per pose" }
 delta_3_1_y = { distribution = "triangular", limits = [0, "1 mm"] }
 [solver]""", 1)
-# In the words of a designer: zones of a drawing, a loose hinge, errors with means, limits and fits, some drawn anew at each
-# pose; limits with two ends, one end, a share of the poses and a spread; responses of one's own.
+# A study as a designer states it: zones of a drawing, a loose hinge, errors with means, limits and fits, some of them
+# drawn anew at each pose; limits with two ends, one end, a share of the poses and a spread; responses that the study
+# defines.
 DESIGNED_HEAD = f"""\
 format = "poesy-study"
 version = 1
@@ -172,7 +173,7 @@ draws = "per machine"
 samples = 12300
 limits = { gauge = ["-60 um", "90 um"], push = { to = "80 um" }, tilt = { to = "0.3 mrad", share = 0.5 }, x = { spread = "0.1 mm" } }
 """
-# Given machines, of which the other errors are drawn, and responses that are those of two poses.
+# Given machines, whose other errors are drawn, and responses that are differences between two poses.
 GIVEN = (DESIGNED_HEAD[:DESIGNED_HEAD.index("[errors.override]")] + """\
 machines = { columns = ["rail_x_1", "rod_2", "batch"], rows = [
 """ + "".join(f"  [{k % 83 - 41}e-6, {k % 59 - 29}e-6, {k % 37 - 18}e-6],\n" for k in range(4200)) + """\
@@ -200,7 +201,7 @@ limits = { probe_position = "0.15 mm", push = ["-0.12 mm", "0.15 mm"] }
 yield = 0.95
 parts = [{ zones = ["face.*", "rail.*", "hinge.*", "rod.*"], each = true, identical_limbs = [1, 2, 3], cost = { law = "reciprocal", b = 1, unit = "mm" } }]
 """
-# Of a mechanism with bodies that gives way under a load.
+# A mechanism with bodies that is deformed by a load.
 FORCES = f"""\
 format = "poesy-study"
 version = 1
@@ -220,7 +221,8 @@ STUDIES = {"sensitivity": SENSITIVITY, "by series": BY_SERIES, "monte-carlo": MO
            "designer's words": DESIGNED, "given machines": GIVEN, "forces": FORCES,
            "allocation": ALLOCATION, "allocation of zones": ZONES, "evaluate": CASES, "identification": IDENTIFICATION,
            "coupling": COUPLING, "fidelities": FIDELITIES}
-# For tests that do not stop a run: each study with a few units only, of which five shards have one each.
+# Replacements for tests that do not stop a run: each study has only a few work units, at least one for each of five
+# shards.
 FEWER = {"samples = 12300": "samples = 4300", "samples = 62300": "samples = 12300", "samples = 6200": "samples = 4200",
          "samples = 300\n": "samples = 100\n", "samples = 30000": "samples = 5000", "samples = 12000": "samples = 4000",
          "count = 4000": "count = 300", "count = 1500": "count = 100", "count = 5000": "count = 500"}
@@ -233,7 +235,7 @@ def with_few_units(study):
 
 
 ADAPTIVE = "samples = { min = 1000, max = 40000, relative_error = 0.01 }"
-# Whose runs go on in rounds, until their intervals are narrow.
+# Studies that take samples in rounds until their intervals are narrow.
 ADAPTIVE_STUDIES = {
     "adaptive sensitivity": SENSITIVITY.replace("samples = 12300", ADAPTIVE),
     "adaptive machines": MACHINES.replace("samples = 12300", ADAPTIVE),

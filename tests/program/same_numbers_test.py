@@ -1,6 +1,6 @@
-"""The file, `poesy show`, its JSON, the exported tables and the report's tables and figures say the same numbers.
+"""The file, `poesy show`, its JSON, the exported tables and the report's tables and figures have the same numbers.
 
-The expected ones are computed here from the file's SI numbers, with this test's own factors for mm, deg and %.
+Expected numbers are computed here from the file's SI numbers, with separate factors for mm, deg and %.
 """
 
 import base64
@@ -16,9 +16,9 @@ from poesy_program import STUDY, ProgramTest, main
 from report_test import Page
 
 DISPLAY = {"m": 1e-3, "rad": math.pi / 180.0, "1": 1.0}
-BELOW_ROUNDING = 1e-10  # an index this small is shown as 0
+BELOW_ROUNDING = 1e-10  # smaller indices are shown as 0
 FLOAT = 2.0**-23
-# What is shown as the index with its interval, and the published estimator with its own.
+# The datasets that are shown as the index with its interval; and the same for the published estimator.
 SHOWN = ("global_corrected", "global_corrected_ci_low", "global_corrected_ci_high")
 PUBLISHED = ("global", "global_ci_low", "global_ci_high")
 
@@ -98,12 +98,12 @@ class SameNumbers(ProgramTest):
         self.assertEqual([row["error"] for row in self.json["ranked"]["rows"]], order)
         value, low, high = (self.found[name] for name in SHOWN)
         self.assertTrue(((low <= value) & (value <= high)).all())
-        self.assertTrue((value < self.found["global"]).any())  # or the two could be one
+        self.assertTrue((value < self.found["global"]).any())  # both estimators differ
 
     def test_exported_indices(self):
         with open(self.folder / "tables/global.csv", newline="", encoding="utf-8") as file:
             head, *rows = csv.reader(file)
-        columns = {name.split(" [")[0]: n for n, name in reversed(list(enumerate(head)))}  # the first of each: SI
+        columns = {name.split(" [")[0]: n for n, name in reversed(list(enumerate(head)))}  # first of equal names: SI
         for factor, row in enumerate(rows):
             self.assertEqual(row[0], self.factors[factor])
             for response, name in enumerate(self.responses):
@@ -141,7 +141,7 @@ class SameNumbers(ProgramTest):
             self.assertEqual(float(other["rms"]), found["overall_rms"][response])
             self.assertEqual(other["count"], str(found["overall_count"][response]))
             self.assertEqual(DISPLAY[other["unit"]], unit)
-            mean_square = (found["rms"][response] ** 2).mean()  # as many samples at each pose
+            mean_square = (found["rms"][response] ** 2).mean()  # all poses have equally many samples
             self.assertTrue(math.isclose(found["overall_rms"][response] ** 2, mean_square, rel_tol=1e-10))
             pose = found["quantiles"][response, :, -1].argmax()
             for name, key in (("largest_q_0_95_low", "quantiles_ci_low"), ("largest_q_0_95_high", "quantiles_ci_high")):

@@ -1,4 +1,4 @@
-"""Shards of a study, run one by one, put together to what one run finds."""
+"""Shards of a study that are run one by one and merged give the result of one run."""
 
 import random
 import shutil

@@ -1,4 +1,4 @@
-"""Drives that move several joints: a delta of six rods on three carriages, held against kinematics of its own (NumPy)."""
+"""Drives that move several joints: a delta of six rods on three carriages, compared with own kinematics (NumPy)."""
 
 import os
 import re
@@ -47,7 +47,7 @@ class SharedDrives(ProgramTest):
         with self.run_study(YIELD, "plain.h5") as file:
             plain = file["yield/value"][()]
         self.assertEqual(found, plain)
-        # Two shares of 4000 machines each: 4 standard errors, a false alarm in 16 000 runs.
+        # Both shares are of 4000 machines. 4 standard errors: one false alarm in 16 000 runs.
         self.assertLess(abs(found - own), 4.0 * np.sqrt(2.0 * own * (1.0 - own) / 4000))
 
     def test_yield_of_six_motors(self):

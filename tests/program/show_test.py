@@ -1,4 +1,4 @@
-"""How `poesy show` prints a result: to the room there is, in the order asked for, or as JSON."""
+"""How `poesy show` prints a result: for the available width, in the requested order, or as JSON."""
 
 import fcntl
 import json
@@ -264,7 +264,7 @@ class TwoRankings(ProgramTest):
         both = self.compare("linear_deformation", "gap")
         self.assertLess(both["kendall_tau"], 0.9)
         self.assertEqual(both["results"][0]["metric"], "published")
-        self.assertEqual(rankings(both)["rows"][-1]["error"], "epsilon_3_3_x")  # no effect as published
+        self.assertEqual(rankings(both)["rows"][-1]["error"], "epsilon_3_3_x")  # no effect with the published metric
         text = self.succeeds("show", "published.h5", "platform.h5")
         for words in ("A: ", "A: published.h5; metric: published, radians", "B: platform.h5; metric: platform, by",
                       f"Kendall's tau of the two rankings is {both['kendall_tau']:.2g}, over 6 errors", "unit of length"):
@@ -286,7 +286,7 @@ class TwoRankings(ProgramTest):
         both = json.loads(self.succeeds("show", "published.h5", "platform.h5", "--json", *options))
         self.assertEqual([row["error"] for row in rankings(both)["rows"]], ["delta_1_0_z", "delta_1_1_y"])
         whole = json.loads(self.succeeds("show", "published.h5", "platform.h5", "--json"))
-        self.assertEqual(both["kendall_tau"], whole["kendall_tau"])  # of all errors, shown or not
+        self.assertEqual(both["kendall_tau"], whole["kendall_tau"])  # tau is of all errors, shown or not
 
     def refused(self, *arguments):
         done = self.poesy("show", *arguments)

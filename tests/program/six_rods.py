@@ -1,4 +1,4 @@
-"""A delta of six rods on three carriages: its kinematics by Newton's method (NumPy), with which programs are compared."""
+"""A delta of six rods on three carriages, solved by Newton's method (NumPy). The program is compared with it."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ def turned(points, k):
     return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ points
 
 
-# Of rods 1 to 6: those of carriage k are k and k + 3.
+# The carriage of rods 1 to 6: carriage k has rods k and k + 3.
 CARRIAGE = np.array([0, 1, 2, 0, 1, 2])
 UP = np.array([turned([REACH + RADIUS, side * HALF, 0], k) for side in (1, -1) for k in range(3)])
 DOWN = np.array([turned([RADIUS, side * HALF, 0], k) for side in (1, -1) for k in range(3)])
@@ -60,7 +60,7 @@ class Machines:
             open_by = self.lengths - np.linalg.norm(self.legs(), axis=2)
             step = np.linalg.solve(self.jacobian(), open_by[:, :, None])[:, :, 0]
             self.R, self.p = rotations(step[:, :3]) @ self.R, self.p + step[:, 3:]
-            if np.abs(step).max() < 1e-10:  # the next would be its square
+            if np.abs(step).max() < 1e-10:  # the next step would be about its square
                 break
         assert np.abs(self.lengths - np.linalg.norm(self.legs(), axis=2)).max() < 1e-14
 

@@ -1,6 +1,6 @@
-"""The scripts in results/slurm/ under a real Slurm, started for this test: results are those of a plain run.
+"""The scripts in results/slurm/ in a real Slurm that the test starts: results are those of a plain run.
 
-Skipped (exit code 77) where Slurm or munge are not installed. The test of the time limit takes a minute or two.
+Skipped (exit code 77) if Slurm or munge is not installed. The test of the time limit takes a minute or two.
 """
 
 import pathlib
@@ -23,9 +23,10 @@ SHARDS = 3
 RANKS = 2
 DONE = slurm.Ended("COMPLETED", 0)
 BOTH_KINDS = {"sensitivity": SENSITIVITY, "monte-carlo": MONTE_CARLO}
-# It takes seconds on one processor.
+# A study that takes seconds on one processor.
 LONG = SENSITIVITY.replace("12300", "700300")
-# poesy that stands still in its job's first run, on the fastest processor, too: signals wait until it goes on.
+# A script that runs poesy but stops it for some seconds in the first run of its job, so the run takes long on any
+# processor. Signals wait until poesy continues.
 STANDING = """\
 #!/bin/bash
 if ((${{SLURM_RESTART_COUNT:-0}} == 0)); then
@@ -98,7 +99,8 @@ class SlurmTest(ResumptionTest):
     def test_time_limit(self):
         """A shard that takes longer than its job may goes back into the queue, until it is done; the merge waits."""
         expected = self.undisturbed(LONG)
-        # Slurm looks every half minute, and later on a busy machine, for jobs to be signalled; their minute must not end.
+        # Slurm signals jobs only every half minute, or later on a busy machine, and the job's minute must not end
+        # before.
         shards = self.submit_shards(1, "--time=1", "--signal=B:TERM@55", self.standing(50))
         merge = self.submit_merge(shards, 1)
         self.completes(shards)

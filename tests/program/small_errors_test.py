@@ -1,5 +1,5 @@
-"""Errors so small that solves round: what has no effect is told by the rounding of the mechanism, and what is too small is
-said to be."""
+"""Errors so small that rounding matters: errors without effect are recognised by the rounding of the mechanism, and
+a message says if errors are too small."""
 
 import csv
 import json
@@ -54,7 +54,7 @@ class SmallErrors(ProgramTest):
                 tolerance = file["tolerances/equal_effect"][at]
                 without[size] = {name for name, value in zip(names, tolerance) if math.isinf(value)}
                 effect = file["sensitivity/global"][at] * file["factors/sigma"][:]
-                # By a measure of its own: nothing lies between what rounding leaves and the smallest effect.
+                # An independent criterion: the largest effect by rounding is far below the smallest true effect.
                 gap = numpy.sort(effect)[len(without[size]) - 1:][:2]
                 self.assertLess(gap[0], 1e-16)
                 self.assertGreater(gap[1], 1e3 * gap[0])
@@ -73,7 +73,7 @@ class SmallErrors(ProgramTest):
         self.assertEqual(sum(row["equal_effect"] == "inf" for row in rows), 33)
         for row in rows:
             for way in ("limit_equal_effect", "limit_equal_tolerance"):
-                self.assertLess(float(row[way]), 0.02, (row["factor"], way))  # the mechanism is 60 mm large
+                self.assertLess(float(row[way]), 0.02, (row["factor"], way))  # m or rad; the mechanism is 60 mm large
 
     def test_adaptive_samples_are_not_spent_on_rounding(self):
         text = study("2upr-rpu", *SIZES[-1], poses=2, samples="{ min = 1000, max = 3000, relative_error = 1e-4 }")
@@ -112,7 +112,7 @@ class SmallErrors(ProgramTest):
                 expected = linear["sensitivity/global_corrected"][:]
                 effect = found * exact["factors/sigma"][:] > exact["sensitivity/rounding"][:][:, None]
             told[size] = effect.sum()
-            # The same draws, so all that differs is rounding.
+            # Both studies have the same draws, so they differ only by rounding.
             numpy.testing.assert_allclose(found[effect], expected[effect], rtol=0.02)
             self.assertTrue(((low <= found) & (found <= high))[effect].all())
             self.assertTrue(numpy.isnan(found[~effect]).all())

@@ -1,4 +1,4 @@
-"""Sobol' indices: the same bits however a study is run, the shares of a linear mechanism, tables, and what is refused."""
+"""Sobol' indices: same bits however a study is run, the shares of a linear mechanism, tables, and what is refused."""
 
 import csv
 import json
@@ -80,7 +80,8 @@ class Sobol(ResumptionTest):
         with h5py.File(self.folder / "out.h5") as file:
             mean = file["monte_carlo/mean"][:]
             spread = file["monte_carlo/std"][:] / numpy.sqrt(file["monte_carlo/count"][:])
-        # The panel's mean is over A, which is these, and as many others, B: they differ as independent means do.
+        # The mean of the Sobol' study is over samples A, which are these machines, and as many independent samples B.
+        # So 2 (both - mean) is the difference of two independent means.
         self.assertTrue((numpy.abs(2 * (both - mean)) < 5 * numpy.sqrt(2) * spread).all())
         self.assertFalse((both == mean).any())
 

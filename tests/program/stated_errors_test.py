@@ -1,5 +1,5 @@
-"""Errors as a designer states them: means, limits, fits, and errors that a machine draws anew at each pose, against plain
-loops in NumPy over the linear kinematics of a hexapod."""
+"""Errors as a designer states them: means, limits, fits, and errors that a machine draws anew at each pose. Compared
+with plain loops in NumPy over the linear kinematics of a hexapod."""
 
 import h5py
 import numpy
@@ -7,7 +7,7 @@ import numpy
 from poesy_program import main
 from resumption import ResumptionTest
 
-# Struts of a telescope's hexapod (lsst-ts/ts_mthexapod), m: their points on the platform and on the base.
+# The struts of a telescope's hexapod (lsst-ts/ts_mthexapod): their points on the platform and on the base (m).
 MOVING = numpy.array([(0, 1701.8, 114.3), (-1542.35, -719.21, 114.3), (1542.35, -719.21, 114.3),
                       (0.79, 1460.49, 228.6), (-1503.37, 7.66, 228.6), (1503.37, 7.66, 228.6)]) / 1e3
 FIXED = numpy.array([(0, 1701.8, 607.3), (-1542.35, -719.21, 607.3), (1542.35, -719.21, 607.3),
@@ -121,7 +121,8 @@ strut_5 = { distribution = "uniform", limits = ["-5 um", "1 um"], draws = "per p
             self.assertEqual(list(file["factors/draws"].asstr()), ["per machine", "per pose", "per machine", "per machine",
                                                                    "per pose", "per machine"])
             numpy.testing.assert_allclose(file["factors/mean"][:], [0, 0, 0, 0, -2e-6, 0], atol=1e-20)
-        # Replay draws the errors of a machine: the fixed ones are the same at every pose, the others are not.
+        # Replay draws the errors of a machine. Those drawn per machine are equal at all poses, those drawn per pose
+        # differ.
         rows = [self.errors_of(sample=11, pose=pose) for pose in (0, 13)]
         for name in rows[0]:
             self.assertEqual(rows[0][name] == rows[1][name], name not in ("strut_2", "strut_5"), name)
@@ -193,7 +194,7 @@ strut_3 = { distribution = "triangular", half_width = "5 um", mean = "-2 um" }
             struts[:, 1], struts[:, 0] = rows.T
             good.append((numpy.abs(struts @ tilt_of_struts().T) <= 0.6).all(axis=1).mean())
         self.assertLess(abs(found["value"] - numpy.mean(good)), 3.9 * numpy.std(good) + 1 / 2400)
-        # Part of the rows, in any shards and with any threads; another table is another study.
+        # The result is the same with any shards and threads. Another table of machines is another study.
         expected = self.content_hash()
         for shard in range(1, 4):
             self.succeeds("run", "study.toml", "-o", f"part-{shard}.h5", "--quiet", "--shard", f"{shard}/3", "--threads", shard)

@@ -1,5 +1,5 @@
-"""What the program says of a study apart from its results: what it holds constant, what looks like a slip, and what may
-help where samples did not converge."""
+"""Messages of the program about a study: which errors it holds constant, what looks like a mistake, and what may
+help if samples did not converge."""
 
 import html
 import re

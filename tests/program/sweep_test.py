@@ -1,4 +1,4 @@
-"""`poesy sweep`: designs that differ in a key, each with the bits of its own run, and how sure their differences are."""
+"""`poesy sweep`: designs that differ in a key. Each has the bits of its own run; how certain their differences are."""
 
 import csv
 import io
@@ -128,13 +128,13 @@ class Sweep(ProgramTest):
             gained, lost = int(found["gained"][d]), int(found["lost"][d])
             self.assertAlmostEqual(100.0 * (gained - lost) / 2000, yields[d] - yields[0], places=9)
             self.assertAlmostEqual(found["change"][0][d], yields[d] - yields[0], places=9)
-            # Fewer machines change sides than there would be with draws of their own.
+            # Fewer machines change sides than with independent draws.
             independent = 2000 * (yields[d] * (100 - yields[0]) + yields[0] * (100 - yields[d])) / 1e4
             self.assertLess(gained + lost, 0.8 * independent)
             low, high = found["change_low"][0][d], found["change_high"][0][d]
             self.assertLess(low, found["change"][0][d])
             self.assertLess(found["change"][0][d], high)
-            half = 1.96 * 100 * math.sqrt(gained + lost - (gained - lost) ** 2 / 2000) / 2000  # Wald's, of many machines
+            half = 1.96 * 100 * math.sqrt(gained + lost - (gained - lost) ** 2 / 2000) / 2000  # Wald's interval
             self.assertAlmostEqual(high - low, 2 * half, delta=0.03 * half + 0.1)
 
     def changes(self, name):
@@ -197,7 +197,7 @@ class Sweep(ProgramTest):
                 low, high = file["sweep/change_low"][0][1], file["sweep/change_high"][0][1]
             held += low <= truth <= high
             widths += (high - low) / seeds
-        self.assertLess(error, 0.1 * widths)  # so the error of the truth hardly matters
+        self.assertLess(error, 0.1 * widths)  # so the error of `truth` is negligible
         self.assertGreaterEqual(held, least_holding(seeds, 0.93))
 
     def test_a_grid_of_two_keys(self):
@@ -279,7 +279,8 @@ class Sweep(ProgramTest):
                 if not self.interrupted([*command, "--resume"], number):
                     break
             done = self.poesy(*command[1:], "--resume", "--threads", 1)
-            self.assertIn(done.returncode, (0, 2), done.stderr)  # 2: the last part was done before it was stopped
+            # 2: nothing is left to resume, because the sweep ended before the signal.
+            self.assertIn(done.returncode, (0, 2), done.stderr)
             self.assertEqual(self.content(), expected)
             self.assertFalse((self.folder / "sweep.h5.part").exists())
 
@@ -332,7 +333,7 @@ class Sweep(ProgramTest):
         self.swept()
         whole = (self.folder / "sweep.h5").read_bytes()
         with h5py.File(self.folder / "sweep.h5", "r+") as file:
-            file["sweep/value"][1, 0] = "60 mm"  # so that the designs form no grid
+            file["sweep/value"][1, 0] = "60 mm"  # so that the designs do not form a grid
         for command in (("show",), ("export", "-d", "tables"), ("report", "-o", "changed.html")):
             done = self.poesy(*command, "sweep.h5")
             self.assertEqual(done.returncode, 0, done.stderr)

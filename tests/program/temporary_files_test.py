@@ -1,5 +1,5 @@
-"""What a run writes beside its result: names that nobody can guess, links that somebody planted, links of the user's
-own, permissions, and what a kill left."""
+"""Files that a run writes next to its result: names that nobody can guess, planted links, links of the user,
+permissions, and what a kill leaves behind."""
 
 import fcntl
 import os
@@ -167,7 +167,7 @@ class TemporaryFiles(ResumptionTest):
         self.write("study.toml", CASES.replace("count = 4000", "count = 40000"))
         command = [PROGRAM, "run", "study.toml", "-o", "out.h5", "--quiet", "--checkpoint-every", "1 h"]
         left = []
-        for _ in range(20):  # the file has its last name before the signal comes, now and then
+        for _ in range(20):  # sometimes the file already has its final name when the signal comes
             resume = ["--resume"] * self.newer.exists()
             seen = []
             with subprocess.Popen([*command, *resume], cwd=self.folder, stdout=subprocess.DEVNULL,

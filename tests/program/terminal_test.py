@@ -1,4 +1,4 @@
-"""What a person sees at a terminal, and what a pipe gets: progress, tables, messages, colour."""
+"""What a person sees at a terminal, and what a pipe receives: progress, tables, messages, colours."""
 
 import os
 import re
@@ -8,7 +8,7 @@ from pathlib import Path
 from poesy_program import PROGRAM, STUDY as WITH_BACKGROUND, ProgramTest, main
 from pseudo_terminal import PseudoTerminal
 
-# What a background holds is a line of its own before the progress (study_notes_test.py).
+# Without a background, which would add a line before the progress (study_notes_test.py).
 STUDY = "".join(line for line in WITH_BACKGROUND.splitlines(True) if not line.startswith("background"))
 LONG = STUDY.replace("samples = 1500", "samples = 1000000000")
 ESCAPE = b"\x1b"
@@ -43,7 +43,7 @@ class Terminal(ProgramTest):
         while terminal.read(0.05):
             rows = terminal.rows()
             if rows and not rows[0].startswith("poesy"):
-                self.assertEqual(len(rows), 1, rows)  # nothing wrapped
+                self.assertEqual(len(rows), 1, rows)  # no line is wrapped
                 self.assertEqual(terminal.screen.cursor.y, 0)
                 shown.append(rows[0])
         self.assertEqual(terminal.close(), 4)
@@ -63,7 +63,7 @@ class Terminal(ProgramTest):
                     shares.append(float(match["share"]))
                     self.assertGreater(float(match["rate"].split()[0]), 0.0)
                 self.assertEqual(shares, sorted(shares))
-                # The line is gone before anything else is said.
+                # The progress line is removed before another message is printed.
                 self.assertEqual(frames(terminal.raw)[-1], "")
                 self.assertTrue(terminal.rows()[0].startswith("poesy: interrupted"), terminal.rows())
                 self.assertNotIn("samples/s", "\n".join(terminal.rows()))

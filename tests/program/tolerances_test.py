@@ -1,4 +1,4 @@
-"""poesy tolerances: what it prints and writes, Monte Carlo studies that confirm it, and what it refuses."""
+"""`poesy tolerances`: what it prints and writes, Monte Carlo studies that confirm it, and what it refuses."""
 
 import csv
 import math
@@ -8,17 +8,17 @@ import h5py
 from poesy_program import GALLERY, STUDY, ProgramTest, main
 
 RESPONSE = "gap"
-# epsilon_1_1_z moves one length alone, and by the published metric has no effect on angles.
+# epsilon_1_1_z changes only a length. With the published metric it has no effect on angles.
 PUBLISHED = STUDY.replace('["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]', '["delta_1_1_y", "epsilon_1_4_z", "epsilon_1_1_z"]')
 PUBLISHED = PUBLISHED.replace("samples = 1500", 'samples = 1500\nreference = { factor = "epsilon_1_1_z", tolerance = "1 deg" }')
-# By the platform's metric indices hold at any size.
+# With the platform metric, indices hold for errors of any size.
 FACTORS = STUDY.replace('["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]', '["delta_1_1_y", "epsilon_1_4_z", "epsilon_1_1_z"]')
 FACTORS = FACTORS.replace('method = "gauss-newton"', 'metric = "platform"')
 REFERENCE = FACTORS.replace("samples = 1500", 'samples = 1500\nreference = { factor = "epsilon_1_1_z", tolerance = "1 deg" }')
-# This one deforms with the background alone.
+# epsilon_3_0_y deforms the mechanism only together with the background.
 DEFORMED = FACTORS.replace('factors = "benign", linear', 'factors = ["epsilon_3_0_y"], linear')
 
-# Those of limbs 1 and 3 that turn the platform.
+# The angular errors of limbs 1 and 3 that rotate the platform.
 ANGLES = [f"epsilon_{name}" for name in ("1_0_y", "1_0_z", "1_1_x", "1_2_x", "1_2_y", "1_3_y", "1_3_z", "1_4_x", "1_4_z", "3_0_y",
                                          "3_0_z", "3_1_x", "3_1_y", "3_2_y", "3_2_z", "3_3_x", "3_4_x", "3_4_z")]
 
@@ -54,7 +54,8 @@ class Tolerances(ProgramTest):
                          {"delta_1_1_y": ("linear", "1", "m"), "epsilon_1_4_z": ("angular", "1", "rad"),
                           "epsilon_1_1_z": ("angular", "1", "rad")})
         self.assertAlmostEqual(float(table["epsilon_1_1_z"]["equal_effect_display"]), 1.0, places=14)
-        # One length alone: 1 degree of it does what pi / 180 mm of the other does, but for sampling.
+        # Both errors act on one length: 1 deg of epsilon_1_1_z has the effect of pi / 180 mm of delta_1_1_y, up to
+        # sampling errors.
         self.assertAlmostEqual(float(table["delta_1_1_y"]["equal_effect_display"]) / (math.pi / 180), 1.0, delta=0.15)
         products = [float(row["index"]) * float(row["equal_effect"]) for row in table.values()]
         self.assertAlmostEqual(max(products) / min(products), 1.0, places=12)
@@ -76,7 +77,7 @@ class Tolerances(ProgramTest):
             self.assertAlmostEqual(float(row["mean_square_share"]), share, places=9)
 
     def test_equal_tolerance_is_one_number_for_lengths_and_one_for_angles(self):
-        # Errors of their own size and shape: a part of the lengths and of the angles.
+        # Some lengths and angles have another size and distribution than the others.
         study = FACTORS.replace('["delta_1_1_y"', '["delta_1_1_y", "delta_1_4_z", "delta_3_4_z"').replace(
             "[analysis]", '[errors.override]\ndelta_1_4_z = { distribution = "uniform", half_width = "0.02 mm" }\n'
             'epsilon_1_4_z = { distribution = "triangular", half_width = "0.01 deg" }\n[analysis]')
@@ -92,8 +93,8 @@ class Tolerances(ProgramTest):
         self.assertEqual({kind: len(values) for kind, values in equal.items()}, {"linear": 1, "angular": 1})
 
     def test_mean_of_norms_says_by_how_much_it_may_be_short(self):
-        # A mean of three norms, whose mean squares do not add even where all is linear. Angles alone, because lengths turn the
-        # platform by the square of their size.
+        # The response is a mean of three norms, so mean squares do not add up even in a linear model. Only angular
+        # errors, because linear errors rotate the platform by the square of their size.
         study = STUDY.replace("count = 6", "count = 20").replace('["delta_1_1_y", "epsilon_1_4_z", "epsilon_3_0_y"]', str(ANGLES))
         study = study.replace("samples = 1500", "samples = 1000").replace('"1 mm" }\nang', '"0.05 mm" }\nang').replace("0.2 deg", "0.05 deg")
         result = self.result(study.replace('method = "gauss-newton"', ""))
@@ -131,7 +132,7 @@ class Tolerances(ProgramTest):
             self.assertAlmostEqual(rms / 0.05e-3, 1.0, delta=0.1)
 
     def test_study_that_refutes_its_limit_says_so(self):
-        # Errors that act with the square of their size look harmless in a study of small ones.
+        # Errors with a quadratic effect look harmless in a study of small errors.
         response = "linear_deformation"
         self.succeeds("tolerances", self.deforming(0.03), "--response", response, "--limit", "0.05 mm", "--extrapolate", "-d", "out")
         first, second = (self.folder / "out/confirm_equal_effect.toml").read_text().splitlines()[:2]
@@ -184,7 +185,7 @@ class Tolerances(ProgramTest):
                                            "deformation_max; choose one with --response"])
 
     def test_confirmation_stays_within_the_parts(self):
-        # Tolerances for so large an angle outgrow the parts.
+        # Tolerances for such a large angle would exceed the sizes of the parts.
         template = self.succeeds("template", "2upr-rpu", "--full").replace("count = 158", "count = 5").replace("samples = 1000", "samples = 300")
         self.write("whole.toml", template)
         self.succeeds("run", "whole.toml", "-o", "w.h5", "--quiet")
@@ -233,7 +234,7 @@ class Tolerances(ProgramTest):
         return ratios
 
     def test_monte_carlo_confirms_the_limit(self):
-        # The prediction is off by what is not linear in the mechanism: some percent, not a factor.
+        # The prediction neglects nonlinear effects, which are some percent.
         for name, ratio in self.confirm(REFERENCE, 0.05).items():
             self.assertAlmostEqual(ratio, 1.0, delta=0.3, msg=name)
 

@@ -1,4 +1,4 @@
-"""Poses along a trajectory: the published helix from a study file to error curves over time, and what is refused."""
+"""Poses along a trajectory: the published helix, from a study file to errors over time, and what is refused."""
 
 import csv
 import math
@@ -22,7 +22,7 @@ cases = [
   { name = "L", errors = { rod-length = { linear = "0.1 mm" } } },
 ]
 """
-# Largest |x|, |y|, |z| of the tip in mm, h = 171.7 mm, computed independently.
+# The largest |x|, |y|, |z| displacement of the tip (mm) for h = 171.7 mm, computed independently.
 MAXIMA = {"FS": (.04621, .04714, .00618), "T": (0, 0, .1), "R": (.02307, .02364, .07933), "L": (.00011, .00010, .10216)}
 
 

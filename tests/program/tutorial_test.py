@@ -1,4 +1,4 @@
-"""results/tutorial/README.md: its commands run, in its order, in an empty folder, and print what it shows."""
+"""results/tutorial/README.md: its commands run in its order in an empty folder, and print what the page shows."""
 
 import math
 import os

@@ -1,5 +1,5 @@
-"""What comes from files that one does not trust: no escape sequence reaches a terminal and no formula a spreadsheet, little memory is
-called little memory, and numbers that overflow are refused."""
+"""Input that cannot be trusted: no escape sequence reaches a terminal, and no formula a spreadsheet; too little
+memory is reported as such, and numbers that overflow are refused."""
 
 import csv
 import json

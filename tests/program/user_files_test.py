@@ -1,5 +1,5 @@
-"""Files that poesy did not write, in the places of those that it writes or continues: they stay as they are, whatever
-they are, and nothing is waited for."""
+"""Files of the user with the names of files that poesy writes or resumes: they are not changed, whatever they are,
+and poesy does not wait for them."""
 
 import os
 import resource
@@ -33,7 +33,7 @@ factors = "linear"
 cost = { law = "reciprocal", b = 1, unit = "mm" }
 """
 PRECIOUS = "precious\n"
-SECONDS = 60.0  # nothing here takes one, but sanitizers are slow
+SECONDS = 60.0  # timeout of a command; large, because sanitizers are slow
 
 
 class UserFiles(ProgramTest):
@@ -70,7 +70,7 @@ class UserFiles(ProgramTest):
                 self.write("r.h5", "")
                 self.ends(0, *command, "-o", "r.h5")
                 whole = (self.folder / "r.h5").read_bytes()
-                self.write("r.h5", whole[:len(whole) // 2])  # a damaged result is one
+                self.write("r.h5", whole[:len(whole) // 2])  # a damaged result may be replaced too
                 self.ends(0, *command, "-o", "r.h5")
 
     def test_a_file_in_the_place_of_the_lock(self):
@@ -96,7 +96,7 @@ class UserFiles(ProgramTest):
         self.assertIn("is not a checkpoint of poesy", self.ends(3, "run", "quick.toml", "-o", "r.h5", "--resume"))
         self.assertLess(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss, 2**20)  # kB
         if os.environ.get("POESY_SANITIZE"):
-            return  # they end a program that asks for so much
+            return  # sanitizers end a program that requests so much memory
         self.write("r.h5.part", "poesy-checkpoint")
         os.truncate(self.folder / "r.h5.part", 2**43)
         said = self.ends(3, "run", "quick.toml", "-o", "r.h5", "--resume")
@@ -129,10 +129,10 @@ class UserFiles(ProgramTest):
                               self.ends(2, "run", "a.toml"))
                 self.assertEqual(theirs.read_text(), PRECIOUS)
         theirs.unlink()
-        for _ in range(2):  # its own are replaced
+        for _ in range(2):  # the second run replaces its own files
             self.ends(0, "run", "a.toml", "--quiet")
             self.assertTrue(theirs.exists())
-        # The study is written first, so a killed run leaves no poses that no study names.
+        # The certificate is written before its poses, so a killed run never leaves poses that no study names.
         self.assertLessEqual((self.folder / "a_certificate.toml").stat().st_mtime_ns, theirs.stat().st_mtime_ns)
         theirs.unlink()
         self.ends(0, "run", "a.toml", "--quiet")
@@ -142,7 +142,7 @@ class UserFiles(ProgramTest):
         """Looked at before anything is computed, with all that a run adds to the name of its result."""
         most = os.pathconf(self.folder, "PC_NAME_MAX")
         for study, added in ((QUICK, ".part.1"), (ALLOCATION, "_certificate_mechanism.toml")):
-            end = ".h5" if added.startswith(".") else ""  # the certificate has no end but its own
+            end = ".h5" if added.startswith(".") else ""  # `added` of a certificate has its extension already
             longest = most - len(end + added + ".tmp.123456789012")
             self.write("study.toml", study)
             for length, code in ((longest + 1, 2), (longest + 30, 2), (longest, 0)):
@@ -169,7 +169,7 @@ class UserFiles(ProgramTest):
             self.assertEqual(done.returncode, 3, done.stderr)
             self.assertIn(b"raise the limit on open files (ulimit -n)", done.stderr)
             self.assertEqual({path.name for path in self.folder.iterdir()}, {"quick.toml", "study.toml"})
-        for files in range(19, 64):  # what is enough to begin is enough to end
+        for files in range(19, 64):  # a run that starts must not fail later for want of open files
             done = run(files)
             if done.returncode == 0:
                 break

@@ -1,5 +1,5 @@
-"""The numbers by which a report predicts yields at other sizes: at the study's own sizes they are its machines; slopes, sizes
-and costs; where nothing is predicted."""
+"""The numbers from which a report predicts yields at other sizes of errors: at the sizes of the study they give its
+machines; slopes, sizes and costs; cases without a prediction."""
 
 import base64
 import json
@@ -120,7 +120,7 @@ class WhatIf(ProgramTest):
         self.assertAlmostEqual(found["otherCosts"] + sum(slider["costs"][same] for slider in found["sliders"]), total)
         for slider in found["sliders"]:
             for factor, cost in zip(found["factors"], slider["costs"]):
-                tolerance = slider["sizes"][0]["value"] * factor  # mm or deg, as b is
+                tolerance = slider["sizes"][0]["value"] * factor  # in mm or deg, like b of the cost law
                 self.assertAlmostEqual(cost * tolerance, 1, places=9)
 
     def test_the_machines_of_an_allocation_are_those_of_its_certificate(self):
@@ -156,7 +156,7 @@ class WhatIf(ProgramTest):
         with h5py.File(self.folder / "out.h5") as file:
             rejects = int(file["yield/rejects"][()])
         self.assertLess(rejects, self.rejected(found, [1] * len(sliders)).sum() - 30)
-        self.assertLessEqual(abs(int(predicted) - rejects), 2)  # the same machines: only the linear map differs
+        self.assertLessEqual(abs(int(predicted) - rejects), 2)  # the prediction uses a linear map
 
     def test_limits_over_poses_have_no_prediction(self):
         self.assertIsNone(self.report(STUDY.replace("LIMITS", 'z = { spread = "0.3 mm" }')))

@@ -1,5 +1,5 @@
-"""The worst case of a coupling study is the largest value of all corners: a planar 3-RPR by kinematics of its own, every
-combination of signs solved one by one."""
+"""The worst case of a coupling study is the largest value of all corners: a planar 3-RPR by independent kinematics,
+solved for every combination of signs."""
 
 import itertools
 import json
@@ -139,7 +139,7 @@ class WorstCase(ProgramTest):
                 share = found[responses.index(response), z, k, m] / own[at]
                 self.assertLess(share, 1 + 1e-9, (subset, size, pose, response))
                 if response == "position":
-                    self.assertGreater(share, 0.9)  # a norm may have another corner that no flip leads to
+                    self.assertGreater(share, 0.9)  # for a norm, single flips of signs may miss the worst corner
                 elif share < 1 - 1e-9:
                     short.append((subset, size, pose, response, share))
         self.assertEqual(short, [])

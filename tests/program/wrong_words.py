@@ -1,5 +1,5 @@
-"""Wrong words of a designer: what is written, what is written in its place, and what the message says, from the problem on to
-the beginning of what to do. The message is at the line that was changed."""
+"""Mistakes in the keys of a designer: the original text, the text that replaces it, and the message from the problem
+to the beginning of the remedy. The place of the message is the changed line."""
 
 STUDY = """\
 format = "poesy-study"
@@ -56,7 +56,7 @@ cost = { law = "reciprocal", b = 1, unit = "mm" }
 bounds = ["0.002 mm", "0.2 mm"]
 """
 
-# Of designed-delta.toml.
+# Changes of designed-delta.toml.
 WRONG_MECHANISMS = [
     ('kind = "plane"', 'kind = "cylinder"',
      "is 'cylinder', which is unknown; known: axis, plane, point,"),

@@ -1,4 +1,4 @@
-"""Every key for the words of a designer, wrongly used: refused at its line, with what to do. Nothing is written."""
+"""Every key for designers with a mistake is refused at its line, with a remedy. Nothing is written."""
 
 from poesy_program import MECHANISMS, ProgramTest, main
 from wrong_words import ALLOCATION, PARTS, STUDY, WRONG_ALLOCATIONS, WRONG_MECHANISMS, WRONG_PARTS, WRONG_STUDIES

@@ -1,5 +1,6 @@
-"""How often the interval of a yield holds the truth, with limits of all kinds, errors drawn anew at each pose, given machines,
-features of a drawing and clearances. The truth is of linear kinematics of its own (NumPy); so studies are of first order."""
+"""How often the interval of a yield holds the truth, for limits of all kinds, errors drawn anew at each pose, given
+machines, features of a drawing and clearances. The truth is by linear kinematics (NumPy), so all studies are of
+first order."""
 
 import h5py
 import numpy as np
@@ -7,9 +8,9 @@ import numpy as np
 from poesy_program import MECHANISMS, ProgramTest, main
 from six_rods import PLACES, machines, rod_effects
 
-SEEDS, MACHINES = 30, 300  # studies of each kind, and machines in each
-DRAWS = 400_000  # of the truth: its standard error is less than a fifth of that of all studies together
-Z = 3.9  # two-sided alpha 1e-4, for each of the three questions to each kind
+SEEDS, MACHINES = 30, 300  # number of studies of each kind, and of machines in each
+DRAWS = 400_000  # machines for the truth: its standard error is below a fifth of that of all studies together
+Z = 3.9  # two-sided alpha 1e-4, for each of three checks of each kind
 RODS = [f"rod_{k}" for k in range(1, 7)]
 STUDY = """\
 format = "poesy-study"
@@ -60,9 +61,9 @@ class Coverage(ProgramTest):
                 self.assertEqual(file["yield/machines"][()], MACHINES)
                 rejects.append(int(file["yield/rejects"][()]))
                 held += file["yield/ci_low"][()] <= truth <= file["yield/ci_high"][()]
-        # The intervals are those of Clopper and Pearson, which hold at least as often as they say.
+        # Clopper-Pearson intervals hold the truth at least as often as stated.
         self.assertGreaterEqual(held, least_holding(SEEDS))
-        # No offset, and no more scatter than machines have that are independent.
+        # The rejects have no bias, and scatter like those of independent machines.
         variance = MACHINES * truth * (1.0 - truth)
         offset = np.mean(rejects) - MACHINES * (1.0 - truth)
         error = np.sqrt(variance / SEEDS + MACHINES ** 2 * truth * (1.0 - truth) / DRAWS)
@@ -88,7 +89,8 @@ class YieldCoverage(Coverage):
         """Beside errors that a machine keeps."""
         generator = np.random.default_rng(2)
         nominal = machines(np.zeros((1, 6)))
-        along = nominal.legs()[..., 2] / np.linalg.norm(nominal.legs(), axis=-1)  # of the rods and the vertical [places x 6]
+        # [places x 6] cosines of the angles between the rods and the vertical.
+        along = nominal.legs()[..., 2] / np.linalg.norm(nominal.legs(), axis=-1)
         rods = generator.normal(0.0, 3e-5, (DRAWS, 6))
         z = np.empty((DRAWS, len(PLACES)))
         for place, effect in enumerate(rod_effects()[:, 5]):
@@ -133,7 +135,8 @@ class Legs:
         self.rod = (self.lower - self.upper) / rod
         across = np.cross(self.hinge, np.cross(self.hinge, self.rod))
         self.square = across / np.linalg.norm(across, axis=1, keepdims=True)
-        # Rows: along the rods, about what is square to hinge and cross pin. Columns: turn, displacement of the origin.
+        # Rows: displacement along each rod, rotation about the normal of each leg's hinge and cross pin. Columns:
+        # rotation, displacement of the origin.
         self.held = np.vstack([np.hstack([np.cross(self.lower - place, self.rod), self.rod]),
                                np.hstack([self.square, np.zeros((3, 3))])])
 
@@ -177,8 +180,9 @@ class DrawingCoverage(Coverage):
         middle, lean = np.sqrt(5e-5 ** 2 - 2e-5 ** 2) / 6.0, 2e-5 / 3.0
         kept = [(generator.normal(0.0, middle, (2, DRAWS)), generator.normal(0.0, lean, (2, DRAWS)),
                  generator.normal(0.0, 2e-5 / 3.0, DRAWS)) for _ in range(3)]
-        # 8 H7/g6: an end of the pin in a disc whose diameter is the clearance, 5 to 29 um, in the mean square of the fit; it
-        # touches the bore. Shift and tilt share this evenly.
+        # Fit 8 H7/g6: each end of the pin touches the bore, so it is off by half the clearance (5 to 29 um, root mean
+        # square 17.2 um) in a random direction. `end` is its standard deviation along an axis (m). Shift and tilt have
+        # equal parts of the variance.
         end = 17.2481883107e-6 / np.sqrt(8.0)
         found = np.zeros((DRAWS, len(self.POSES), 3))
         for m, pose in enumerate(self.POSES):

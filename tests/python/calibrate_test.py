@@ -1,4 +1,4 @@
-"""poesy.calibrate with arrays, beside the program's own command and errors that are known."""
+"""Compares poesy.calibrate, called with arrays, with the program's command and with known errors."""
 
 import shutil
 import unittest

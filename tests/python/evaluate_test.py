@@ -1,4 +1,4 @@
-"""poesy.evaluate and poesy.mechanism beside the program's own command, and beside results of studies."""
+"""Compares poesy.evaluate and poesy.mechanism with the program's command and with results of studies."""
 
 import json
 import unittest

@@ -1,4 +1,4 @@
-"""poesy.figure and `python3 -m poesy figure`: sizes, type, one figure for each kind, the same bytes, refusals."""
+"""poesy.figure and `python3 -m poesy figure`: sizes, fonts, a figure for each kind, reproducible bytes, refusals."""
 
 import errno
 import os
@@ -60,7 +60,7 @@ class Figures(FolderTest):
         ranked = found.ranking("angular_deformation")[:15]
         self.assertEqual([text.get_text() for text in axes.get_yticklabels()], [row.name for row in ranked])
         np.testing.assert_array_equal([bar.get_width() for bar in axes.patches], [row.effect for row in ranked])
-        ends = [line.get_xdata() for line in axes.lines if line.get_marker() == "|"]  # seen where intervals are short
+        ends = [line.get_xdata() for line in axes.lines if line.get_marker() == "|"]  # caps of intervals
         np.testing.assert_array_equal(ends, [[row.effect_low for row in ranked], [row.effect_high for row in ranked]])
 
     def test_the_axis_says_how_many_are_left_out(self):
@@ -68,7 +68,7 @@ class Figures(FolderTest):
         ranked = len(found.ranking().rows)
         self.assertGreater(ranked, 15)
         label = poesy.figure(found).axes[0].get_xlabel()
-        self.assertTrue(label.endswith(f"the first 15 of {ranked}"), label)  # in one line
+        self.assertTrue(label.endswith(f"the first 15 of {ranked}"), label)  # the label is not wrapped
 
     def test_widths(self):
         for size, expected in (("85mm", 85.0), ("170 mm", 170.0), ("8.5 cm", 85.0), (100, 100.0), ("4in", 101.6)):
@@ -84,7 +84,7 @@ class Figures(FolderTest):
             for name in ("a", "b"):
                 poesy.figure(result("monte-carlo"), f"{name}.{end}")
             self.assertEqual(Path(f"a.{end}").read_bytes(), Path(f"b.{end}").read_bytes(), end)
-        self.assertIn(b"epsilon_1_1_x", Path("a.svg").read_bytes())  # text, and not outlines
+        self.assertIn(b"epsilon_1_1_x", Path("a.svg").read_bytes())  # text is stored as text, not as outlines
 
     def test_the_style_stays_within(self):
         import matplotlib
@@ -138,14 +138,14 @@ class Figures(FolderTest):
     def test_command_of_the_program(self):
         shutil.copyfile(result("sensitivity").path, "study.h5")
         words = ("study.h5", "-o", "figure.pdf", "--size", "170mm", "--response", "gap")
-        Path("matplotlib.py").write_text("raise SystemExit(99)")  # of the present folder, which is not where modules are
+        Path("matplotlib.py").write_text("raise SystemExit(99)")  # a module in the current folder must not be imported
         done = self.program(*words)
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "figure.pdf\n", ""))
         Path("matplotlib.py").unlink()
         drawn = Path("figure.pdf").read_bytes()
         self.command("study.h5", "-o", "other.pdf", *words[3:])
         self.assertEqual(drawn, Path("other.pdf").read_bytes())
-        self.assertEqual(self.program(*words).returncode, 0)  # replaces its own
+        self.assertEqual(self.program(*words).returncode, 0)  # replaces its own figure
         self.assertEqual(self.program(*words, path="none", named=sys.executable).returncode, 0)
         done = self.program(*words, "--python", sys.executable, path="none", named="none/python")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -175,7 +175,7 @@ class Figures(FolderTest):
                 poesy.figure(result("sensitivity"), "full.pdf")
 
     def test_nothing_half_written(self):
-        Path("figure.pdf").mkdir()  # cannot be replaced
+        Path("figure.pdf").mkdir()  # a folder, which cannot be replaced
         with self.assertRaises(OSError):
             poesy.figure(result("sensitivity"), "figure.pdf")
         self.assertEqual([path.name for path in self.folder.iterdir()], ["figure.pdf"])

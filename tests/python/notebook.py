@@ -1,6 +1,6 @@
 """Executes a notebook with this interpreter, whatever kernels are installed.
 
-usage: notebook.py NOTEBOOK [OUTPUT]; ends with 77 where nbclient or ipykernel is absent
+usage: notebook.py NOTEBOOK [OUTPUT]; exits with 77 if nbclient or ipykernel is missing
 """
 
 import json
@@ -36,8 +36,8 @@ def executed(path):
         (kernel / "kernel.json").write_text(json.dumps({"argv": argv, "display_name": "this", "language": "python"}))
         os.environ["JUPYTER_PATH"] = folder
         os.environ.setdefault("IPYTHONDIR", folder)
-        os.environ["PYDEVD_DISABLE_FILE_VALIDATION"] = "1"  # else the kernel complains of Python's own modules
-        os.environ.pop("MPLBACKEND", None)  # figures inline
+        os.environ["PYDEVD_DISABLE_FILE_VALIDATION"] = "1"  # otherwise the kernel warns about Python's own modules
+        os.environ.pop("MPLBACKEND", None)  # so that figures are inline
         resources = {"metadata": {"path": folder}}
         nbclient.NotebookClient(notebook, timeout=300, kernel_name="this", resources=resources).execute()
     return notebook

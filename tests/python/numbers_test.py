@@ -1,4 +1,4 @@
-"""Rankings, Sobol' indices for SALib and verdicts are the program's: `poesy show --json`, `poesy export`."""
+"""Rankings, Sobol' indices for SALib and verdicts are those of the program: `poesy show --json`, `poesy export`."""
 
 import csv
 import json
@@ -24,7 +24,7 @@ class Numbers(FolderTest):
             for field, column in columns.items():
                 value, expected = getattr(own, field), column(row) if callable(column) else row[column]
                 if value == 0.0 and expected is not None:
-                    self.assertLess(abs(expected), 1e-9)  # the program prints 0 for what is no more than rounding
+                    self.assertLess(abs(expected), 1e-9)  # the program prints 0 for values at the level of rounding
                 elif expected is None:
                     self.assertTrue(math.isnan(value), (own.name, field))
                 elif isinstance(expected, str):
@@ -87,7 +87,7 @@ class Numbers(FolderTest):
             what = "group" if name == "sobol of groups" else "error"
             for response in found.units("response"):
                 rows = shown(found, "--response", response)[f"sobol_{response}"]["rows"]
-                if what == "group":  # the program ranks by the Shapley effect where there is one
+                if what == "group":  # the program ranks groups by the Shapley effect
                     rows = sorted(rows, key=lambda row: -row["ST"])
                 ranked = found.ranking(response)
                 self.assertEqual(ranked.what, what)
@@ -136,13 +136,13 @@ class Numbers(FolderTest):
         limited = [column["name"].removeprefix("share_") for column in table["columns"][1::3]]
         self.assertEqual(set(limited), {"gap", "angular_deformation"})
         by_response = found.to_xarray("yield")["by_response"]
-        self.assertEqual(float(by_response.sel(response=limited[0])), float(by_response.min()))  # rejects most
+        self.assertEqual(float(by_response.sel(response=limited[0])), float(by_response.min()))  # rejects most machines
         for response, ranked in ((limited[0], found.ranking()), (limited[1], found.ranking(limited[1]))):
             def share(end, of=response):
                 return lambda row: row[f"share_{end}{of}"] / 100.0
             columns = {"name": "error", "mean_square_share": share(""), "mean_square_share_low": share("ci_low_"),
                        "mean_square_share_high": share("ci_high_")}
-            order = [str(name) for name in found.to_xarray("yield")["factor"].values]  # of equal shares
+            order = [str(name) for name in found.to_xarray("yield")["factor"].values]  # for equal shares
             rows = sorted(table["rows"], key=lambda row: (-row[f"share_{response}"], order.index(row["error"])))
             self.check(ranked, rows, columns)
             self.assertIn(response, ranked.title)
@@ -152,7 +152,7 @@ class Numbers(FolderTest):
                 self.assertAlmostEqual(row.change, changes[row.name]["change"] / 100.0, places=12)
         label = found.plot.ranking().get_xlabel()
         self.assertEqual(label, f"share of the scatter of {limited[0]}")
-        self.assertEqual(found.ranking("linear_deformation").value, "S1")  # has no limit
+        self.assertEqual(found.ranking("linear_deformation").value, "S1")  # this response has no limit
 
     def test_allocation(self):
         found = result("allocation")

@@ -1,4 +1,4 @@
-"""What the tests of the Python package share: the package from the tree, the program, and studies that are quick."""
+"""Shared by the tests of the Python package: the package from the tree, the program, and studies that are quick."""
 
 import os
 import sys
@@ -21,7 +21,7 @@ ERRORS = {
     "angular": {"distribution": "normal", "sigma": "0.02 deg"},
 }
 PLATFORM = {"metric": "platform"}
-HOPELESS = {"method": "gauss-newton", "max_iterations": 1, "not_converged": "fail"}  # a solver that solves nothing
+HOPELESS = {"method": "gauss-newton", "max_iterations": 1, "not_converged": "fail"}  # a solver that never converges
 
 
 def study(analysis, model="2upr-rpu", poses=4, **more):
@@ -35,7 +35,7 @@ PARTS = [
     {"factors": kind, "each": True, "identical_limbs": [1, 2], "cost": {"law": "reciprocal", "b": 1, "unit": unit}}
     for kind, unit in (("linear", "mm"), ("angular", "deg"))
 ]
-# One study of each kind, and of a kind as often as its files differ.
+# Studies of all kinds, with one study for each form of result file that a kind has.
 STUDIES = {
     "sensitivity": study({"kind": "sensitivity", "samples": 200}),
     "sensitivity of the 3-prs": study({"kind": "sensitivity", "samples": 200}, model="3-prs"),

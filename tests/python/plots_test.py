@@ -1,4 +1,4 @@
-"""Pictures show the numbers of the result, with units; kinds that have none say so."""
+"""Plots show the numbers of the result with units. Kinds without a plot give a message."""
 
 import unittest
 

@@ -1,6 +1,6 @@
-"""Result files of every kind as the package reads them, compared with the files themselves, and files that are none.
+"""Result files of every kind as the package reads them, compared with the files; and files that are not results.
 
-usage: results_test.py EXAMPLES; EXAMPLES is where write_examples wrote
+usage: results_test.py EXAMPLES; EXAMPLES is the folder to which write_examples wrote
 """
 
 import shutil

@@ -1,4 +1,4 @@
-"""poesy.run: studies as dicts and files, exceptions with the program's sentence, progress, Ctrl-C and resuming."""
+"""poesy.run: studies as dicts and files, exceptions with the program's message, progress, Ctrl-C and resuming."""
 
 import copy
 import gc
@@ -17,7 +17,7 @@ from unittest import mock
 from package import HOPELESS, PROGRAM, ROOT, STUDIES, FolderTest, main, poesy, result, study
 
 RPS3 = (ROOT / "tests" / "data" / "mechanisms" / "rps3.toml").read_text()
-LONG = study({"kind": "sensitivity", "samples": 10**7}, poses=50)  # hours, but no day
+LONG = study({"kind": "sensitivity", "samples": 10**7}, poses=50)  # takes hours, but less than a day
 LONGER_THAN_A_DAY = study({"kind": "sensitivity", "samples": 10**13})
 
 
@@ -40,7 +40,7 @@ class Runs(FolderTest):
         asked = study({"kind": "sensitivity", "samples": 50}, poses=2)
         asked |= {"mechanism": {"file": "robots/rps3.toml"}, "poses": {"select": "file", "file": "poses.csv"}, "solver": {}}
         found = poesy.run(asked)
-        self.assertEqual(found.study["mechanism"]["file"], "robots/rps3.toml")  # and not a path of a temporary folder
+        self.assertEqual(found.study["mechanism"]["file"], "robots/rps3.toml")  # not the path of a temporary folder
         self.assertEqual(found.to_xarray("poses")["z"].values.tolist(), [0.6, 0.55])
         Path("study.toml").write_text(poesy._toml.dumps({"format": "poesy-study", "version": 1, **asked}))
         self.assertEqual(found.attrs["content_sha256"], poesy.run("study.toml").attrs["content_sha256"])
@@ -75,7 +75,7 @@ class Runs(FolderTest):
     def test_a_limit_that_is_not_kept_is_a_verdict(self):
         found = poesy.run(STUDIES["evaluate"])
         self.assertEqual(found.verdict, "not kept")
-        self.assertRegex(found.messages[-1], "^gap is .* above its limit of 0.05 mm")  # without a file that nobody knows
+        self.assertRegex(found.messages[-1], "^gap is .* above its limit of 0.05 mm")  # no temporary file
 
     def test_warnings_point_at_the_call(self):
         asked = study({"kind": "monte-carlo", "draws": "per machine", "samples": 200, "yield": 0.5, "limits": {"gap": "0.06 mm"}})
@@ -159,10 +159,10 @@ class Programs(FolderTest):
         (self.folder / "bin").mkdir()
         in_environment = self.fake("exit 0", "bin/poesy")
         with mock.patch.dict(os.environ, {"PATH": str(self.folder)}), mock.patch.object(sys, "prefix", str(self.folder)):
-            self.assertEqual(poesy._program.find(), str(Path(PROGRAM).absolute()))  # POESY
+            self.assertEqual(poesy._program.find(), str(Path(PROGRAM).absolute()))  # from the variable POESY
             del os.environ["POESY"]
             self.assertEqual(poesy._program.find(), str(in_environment))
-            with mock.patch.object(sys, "base_prefix", str(self.folder)):  # not an environment
+            with mock.patch.object(sys, "base_prefix", str(self.folder)):  # not a virtual environment
                 self.assertEqual(poesy._program.find(), str(path))
             in_environment.unlink()
             self.assertEqual(poesy._program.find(), str(path))
@@ -230,7 +230,7 @@ except KeyboardInterrupt as error:
 class Interruption(FolderTest):
     def interrupted(self, asked, *, to_group):
         """Ctrl-C in a terminal goes to the whole group of processes in the foreground."""
-        environment = os.environ | {"TMPDIR": str(self.folder)}  # where the study's file is kept
+        environment = os.environ | {"TMPDIR": str(self.folder)}  # the folder of the temporary study file
         command = [sys.executable, "-B", "-c", INTERRUPTED, json.dumps(asked), str(self.folder / "out.h5")]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment, start_new_session=True) as run:
             begun = self.folder / "out.h5.lock"

@@ -1,6 +1,6 @@
-"""The package's source: types, docstrings, and no import that is not needed to read a result.
+"""The source of the package: types, docstrings, and no import that is not needed to read a result.
 
-mypy checks the types where it is installed.
+mypy checks the types if it is installed.
 """
 
 import ast

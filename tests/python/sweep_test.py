@@ -47,7 +47,7 @@ class Sweeps(FolderTest):
         for c, line in enumerate(axes.lines):
             np.testing.assert_array_equal(line.get_xdata(), [60.0, 70.0, 80.0])
             np.testing.assert_array_equal(line.get_ydata(), merit[c::2])
-        self.assertEqual(len(axes.collections), 2)  # the bands of intervals
+        self.assertEqual(len(axes.collections), 2)  # bands of the intervals
         self.assertEqual(found.plot.sweep("root mean square of gap").get_ylabel(), "root mean square of gap [mm]")
         for wrong in (lambda: found.plot.sweep("cost"), lambda: result("sensitivity").plot.sweep()):
             with self.assertRaises(poesy.NotInResult):

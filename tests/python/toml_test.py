@@ -1,4 +1,4 @@
-"""What the package writes as TOML, read by the standard library, is what it was given."""
+"""TOML that the package writes is read by the standard library as the same values."""
 
 import random
 import string

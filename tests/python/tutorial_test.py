@@ -1,4 +1,4 @@
-"""The example of the package's README, in under 15 lines, and the notebook, executed."""
+"""Executes the example of the package's README, which has less than 15 lines, and the notebook."""
 
 import re
 import sys

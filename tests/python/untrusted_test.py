@@ -1,4 +1,4 @@
-"""Result files that somebody made to have other files read: the package and results/read_results.py refuse them by name."""
+"""Result files made to read other files: the package and results/read_results.py refuse them with a clear message."""
 
 import ctypes
 import ctypes.util
@@ -98,7 +98,7 @@ class Untrusted(FolderTest):
             local.dims[0].detach_scale(local.dims[0][0])
             local.dims[0].attach_scale(hidden)
             library = ctypes.CDLL(ctypes.util.find_library("hdf5_serial") or ctypes.util.find_library("hdf5"))
-            self.assertGreaterEqual(library.H5Oincr_refcount(ctypes.c_int64(hidden.id.id)), 0)  # kept without its link
+            self.assertGreaterEqual(library.H5Oincr_refcount(ctypes.c_int64(hidden.id.id)), 0)  # without a link
             del file["hidden"]
 
         self.change(hide)

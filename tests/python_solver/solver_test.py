@@ -1,5 +1,5 @@
-"""The module poesy_solver: the program's own bits, no copies, threads that run meanwhile, what is refused, and an
-optimiser that calls it.
+"""The module poesy_solver: same bits as the program, no copies, other threads run during a call, what is refused, and
+an optimiser that calls it.
 
 usage: POESY_PROGRAM=... PYTHONPATH=build/release/python solver_test.py
 """
@@ -29,7 +29,7 @@ import poesy_solver
 PROGRAM = os.environ["POESY_PROGRAM"]
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 GALLERY = ROOT / "results" / "gallery"
-HOME = [-0.24, 0.1, 0.2]  # of the 2upr-rpu
+HOME = [-0.24, 0.1, 0.2]  # a pose of the 2upr-rpu (m, rad, rad)
 SIZES = {"m": 1e-4, "rad": math.radians(0.1)}
 
 
@@ -277,7 +277,7 @@ class Memory(unittest.TestCase):
         errors, out = np.zeros((71, 400000)), np.zeros((3, 400000))
         errors += 1e-5
         self.at_home(np.ascontiguousarray(errors[:, :5000]))
-        pathlib.Path("/proc/self/clear_refs").write_text("5")  # the peak begins at what is in use now
+        pathlib.Path("/proc/self/clear_refs").write_text("5")  # resets the peak to the memory in use
         before = self.peak()
         self.at_home(errors, out)
         self.assertLess(self.peak() - before, errors.nbytes / 8)
@@ -299,13 +299,13 @@ class Threads(unittest.TestCase):
         def count():
             while not stop.is_set():
                 counted[0] += 1
-                time.sleep(0.0)  # gives the GIL away, which nothing else makes it do
+                time.sleep(0.0)  # releases the GIL; the switch interval below never does
 
         interval = sys.getswitchinterval()
         self.addCleanup(sys.setswitchinterval, interval)
         counter = threading.Thread(target=count)
         counter.start()
-        sys.setswitchinterval(1000.0)  # so this thread keeps the GIL unless the call gives it away
+        sys.setswitchinterval(1000.0)  # so this thread keeps the GIL unless the call releases it
         before = counted[0]
         at_home(errors)
         after = counted[0]
@@ -455,7 +455,7 @@ class Guide(unittest.TestCase):
         self.assertGreater(len(blocks), 1)
         names = {"print": lambda *_: None}
         for block in blocks:
-            exec(compile(block, "README.md", "exec"), names)  # the tutorial's own lines
+            exec(compile(block, "README.md", "exec"), names)  # the code of the tutorial
 
 
 class Designs(unittest.TestCase):
@@ -505,7 +505,7 @@ class Designs(unittest.TestCase):
         self.assertLess(found.fun, 0.7 * names["tool_error"]((0.25, 0.12, 0.25)))
         for value, (least, most) in zip(found.x, names["bounds"]):
             self.assertTrue(least <= value <= most)
-        usual = names["poesy"].run(GALLERY / "tricept" / "yield.toml")  # the same study of the design in the file
+        usual = names["poesy"].run(GALLERY / "tricept" / "yield.toml")  # the same study with the design of the file
         yields = [result.to_xarray("yield")["value"].item() for result in (usual, names["certificate"])]
         self.assertLess(*yields)
 

@@ -1,4 +1,4 @@
-"""What tests of results/ share: a folder's command is run into a temporary folder, and what it wrote is compared."""
+"""Shared by tests of results/: runs the command of a folder into a temporary folder, and reads what it wrote."""
 
 import os
 import pathlib

@@ -1,7 +1,7 @@
-"""Each folder here holds a study and the indices it gave; a change of any of them must be meant.
+"""Each folder here holds a study and the indices that it gave. An index may only change on purpose.
 
-Usage: regression_test.py POESY [--update]. With --update the expected tables are rewritten: look at the difference
-before committing it. Golden numbers say that nothing moved, not that it is right: other tests do that.
+Usage: regression_test.py POESY [--update]. With --update the expected tables are rewritten: look at the differences
+before you commit them. The tables show that nothing changed, not that it is correct; other tests do that.
 """
 
 import csv
@@ -11,7 +11,7 @@ import tempfile
 from pathlib import Path
 
 RELATIVE = 1e-9
-# Below this an index is rounding, and its digits are not expected to stay.
+# Smaller indices are rounding errors, so their digits may change.
 ABSOLUTE = 1e-12
 
 

@@ -1,8 +1,8 @@
-"""results/3prs-paper/COMPARISON.md is what its command writes, and says what it should.
+"""results/3prs-paper/COMPARISON.md is what its command writes, and its verdicts are as expected.
 
 usage: three_prs_paper_test.py PROGRAM
 
-Words and verdicts must be the same, numbers to 1 % or to the last digit that is shown.
+Words and verdicts must be the same, and numbers agree to 1 % or to the last digit that is shown.
 """
 
 import sys
@@ -11,7 +11,8 @@ import unittest
 from regenerated import NUMBER, RESULTS, figures_of, regenerated, rows_under
 
 FOLDER = RESULTS / "3prs-paper"
-# Reference values, computed independently: largest |x|, |y|, |z| of the tool tip on the first trajectory at first order, mm.
+# Reference values (mm), computed independently: largest |x|, |y|, |z| displacement of the tip on trajectory 1, first
+# order.
 ALL_LIMBS = {"FS": (0.0462, 0.0471, 0.0062), "T": (0.0, 0.0, 0.1), "R": (0.0231, 0.0236, 0.0793)}
 LIMB_1 = {"FS": (0.0240, 0.0088, 0.0135), "T": (0.0873, 0.0028, 0.0509), "R": (0.0759, 0.0567, 0.0404)}
 

@@ -4,8 +4,9 @@
 
 namespace poesy::test {
 
-/// The fake mechanism, whose solver gives up where the first response is above kLimit, and finds no number above twice
-/// that. With errors of standard deviation 1e-3 the limit lies at three of delta_1 and two of epsilon_1, about.
+/// The fake mechanism with a solver that reaches the iteration cap if the first response exceeds kLimit, and becomes
+/// non-finite if it exceeds twice kLimit. With sigma = 1e-3 the limit is at about three sigma of delta_1 or two sigma
+/// of epsilon_1.
 class FailingModel final : public FakeModel {
  public:
   static constexpr double kLimit = 4.5e-4;
@@ -33,7 +34,7 @@ class FailingModel final : public FakeModel {
   };
 };
 
-/// A catalog of it alone.
+/// A catalog with only the FailingModel.
 inline Catalog failing_catalog() {
   return {{FakeModel::describe(), [](std::span<const double> /*geometry*/, std::size_t /*fidelity*/) {
              return std::make_unique<FailingModel>();

@@ -23,7 +23,8 @@ class FakeModel : public Model {
 
   static ModelDescription describe();
 
-  /// d response / d error before the absolute value: arm * k[r][p] * (1 + beta + 2 gamma - z).
+  /// The derivative of a response by an error, before the absolute value: arm * kWeights[r][p] * (1 + beta + 2 gamma -
+  /// z).
   static double weight(double arm, std::size_t response, std::size_t factor, std::span<const double> pose) {
     constexpr double kWeights[2][3] = {{2.0, 3.0, 0.0}, {0.5, 1.0, 0.0}};
     return arm * kWeights[response][factor] * (1.0 + pose[1] + 2.0 * pose[2] - pose[0]);
@@ -45,8 +46,8 @@ class FakeModel : public Model {
 
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override;
 
-  /// Chart "sums": depth = -z, sum = beta + gamma, difference = beta - gamma. No pose has |sum| > 2 rad; of sums below
-  /// -2 rad it knows why.
+  /// Chart "sums": depth = -z, sum = beta + gamma, difference = beta - gamma. No pose has |sum| > 2 rad. For sums below
+  /// -2 rad, no_pose_because() states the reason.
   std::optional<std::vector<double>> pose_from_chart(std::size_t /*chart*/,
                                                      std::span<const double> sums) const override {
     if (std::abs(sums[1]) > 2.0) return std::nullopt;
@@ -62,7 +63,7 @@ class FakeModel : public Model {
   double arm_;
 };
 
-/// Details: both sums before their absolute value.
+/// The evaluator of FakeModel. The details are the sums of both responses before the absolute value.
 class FakeEvaluator : public Evaluator {
  public:
   explicit FakeEvaluator(double arm) : arm_(arm) {}
@@ -132,7 +133,7 @@ inline ModelDescription FakeModel::describe() {
   return model;
 }
 
-/// The catalog of tests: the fake mechanism alone.
+/// A catalog with only the fake mechanism.
 inline Catalog fake_catalog() {
   return {{FakeModel::describe(), [](std::span<const double> geometry, std::size_t /*fidelity*/) {
              return std::make_unique<FakeModel>(geometry[0]);

@@ -12,10 +12,10 @@
 
 namespace poesy::test {
 
-/// Ranks that are threads of this process, with a queue of messages for each.
+/// A network for ranks that are threads of this process. Each rank has a queue of messages.
 class FakeNetwork {
  public:
-  /// Ranks after rank 0 have room for messages of so many bytes.
+  /// room: the largest message (bytes) that ranks other than rank 0 can receive.
   FakeNetwork(std::size_t size, std::size_t room) : room_(room), inboxes_(size) {}
 
   void send(std::size_t to, Ranks::Message message) {
@@ -34,9 +34,9 @@ class FakeNetwork {
   }
 
   std::size_t size() const { return inboxes_.size(); }
-  /// Of all messages that were sent.
+  /// Number of bytes of all sent messages.
   std::size_t bytes() const { return bytes_; }
-  /// Of messages that nobody received.
+  /// Number of messages that were not received.
   std::size_t left() const {
     std::size_t sum = 0;
     for (const auto& inbox : inboxes_) sum += inbox.size();
@@ -67,15 +67,15 @@ class FakeRanks : public Ranks {
 
 /// How a run on fake ranks ended.
 struct FakeRun {
-  std::vector<int> exit_codes;      ///< of each rank
-  std::optional<RankLeft> left;     ///< as rank 0 knows it
-  std::exception_ptr problem;       ///< what rank 0's body threw
-  std::size_t bytes = 0;            ///< of all messages
-  std::size_t messages_unread = 0;  ///< when all ranks were gone
+  std::vector<int> exit_codes;      ///< exit code of each rank
+  std::optional<RankLeft> left;     ///< the rank that left first and why, as rank 0 knows it
+  std::exception_ptr problem;       ///< the exception that rank 0's body threw
+  std::size_t bytes = 0;            ///< number of bytes of all messages
+  std::size_t messages_unread = 0;  ///< after all ranks have ended
 };
 
-/// Runs the body on each of the ranks as the program does. Rank 0's exit code: 0, or 9 when it threw, or 7 when the
-/// others were not gone in time.
+/// Runs the body on each rank as the program does. The exit code of rank 0 is 0, 9 if its body threw, or 7 if the other
+/// ranks did not end in time.
 inline FakeRun run_on_fake_ranks(std::size_t size, const std::function<void(Team&)>& body,
                                  std::size_t room = std::numeric_limits<std::size_t>::max()) {
   FakeNetwork network(size, room);

@@ -6,7 +6,7 @@
 
 namespace poesy::test {
 
-/// Lets no file of this process grow beyond a size.
+/// Limits the size of files that this process writes, during the lifetime of the object.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -14,10 +14,11 @@
 
 namespace poesy::test {
 
-/// Responses [R] of errors [F] at a pose with one coordinate.
+/// Computes the responses to all errors at a pose with one coordinate.
 using ErrorFunction = std::function<void(std::span<const double> errors, double pose, std::span<double> responses)>;
 
-/// A mechanism that is a function with known statistics: errors x1, x2, ..., responses of no unit.
+/// A model that is a plain function, e.g. one with known statistics. Its errors are x1, x2, ...; its responses have no
+/// unit.
 class FunctionModel : public Model {
  public:
   FunctionModel(std::size_t errors, std::vector<std::string> responses, ErrorFunction function)
@@ -77,7 +78,8 @@ inline std::unique_ptr<Evaluator> FunctionModel::evaluator(const SolverOptions&)
   return std::make_unique<FunctionEvaluator>(*this);
 }
 
-/// A study of all errors of a function, each with this distribution. entry: of the function; must outlive the study.
+/// A study of all errors of a function, each with this distribution. entry: that of the function; it must outlive the
+/// study.
 inline Study function_study(const CatalogEntry& entry, const StudyKind& kind, const Distribution& distribution,
                             std::size_t samples) {
   Study study;

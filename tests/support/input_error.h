@@ -10,7 +10,7 @@
 
 namespace poesy::test {
 
-/// A text with the place of a mistake marked by '^', taken apart.
+/// A text in which '^' marks the place of a mistake: the text without the mark, and the line and column of the mark.
 struct Marked {
   explicit Marked(std::string_view marked) : text(marked) {
     const std::size_t mark = text.find('^');
@@ -27,8 +27,8 @@ struct Marked {
   std::size_t column = 1;
 };
 
-/// Calls `read`, which must throw an InputError that begins with this place, has every key word, and is one line that
-/// ends with a remedy.
+/// Expects that read() throws an InputError that begins with this place, contains all words, and is one line that ends
+/// with a remedy.
 template <class Read>
 void expect_input_error(Read&& read, const Place& place, const std::vector<std::string>& words) {
   try {
@@ -43,7 +43,7 @@ void expect_input_error(Read&& read, const Place& place, const std::vector<std::
   }
 }
 
-/// Why `read` refuses its input; empty where it does not.
+/// The message with which read() refuses its input. Empty if it accepts the input.
 template <class Read>
 std::string refusal_of(Read&& read) {
   try {

@@ -11,7 +11,7 @@
 
 namespace poesy::test {
 
-/// The instruction sets that kernels are compiled for here.
+/// The instruction sets for which kernels are compiled on this platform.
 #if defined(__x86_64__)
 inline constexpr const char* kEveryIsa[] = {"plain", "avx2", "avx512"};
 #elif defined(__aarch64__)
@@ -20,7 +20,7 @@ inline constexpr const char* kEveryIsa[] = {"plain", "neon"};
 inline constexpr const char* kEveryIsa[] = {"plain"};
 #endif
 
-/// The environment variable POESY_ISA, set for a while.
+/// Sets the environment variable POESY_ISA during the lifetime of the object.
 class ForcedIsa {
  public:
   explicit ForcedIsa(const char* name) {
@@ -51,7 +51,7 @@ inline bool machine_has(const char* isa) {
   }
 }
 
-/// Runs with each instruction set that this machine has.
+/// A test that runs with each instruction set. It is skipped if the machine does not have the instruction set.
 class WithIsa : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {

@@ -12,7 +12,7 @@ namespace poesy::test {
 /// A kind of study, as a parameter of tests.
 using KindOfStudy = const StudyKind*;
 
-/// For studies of any kind: Monte Carlo studies take them.
+/// Sets the quantiles of a Monte Carlo study. Does nothing for other kinds.
 inline void set_quantiles(Analysis& analysis, const std::vector<double>& quantiles) {
   if (analysis.kind == &kMonteCarloStudy) asked_of<MonteCarloOptions>(analysis).quantiles = quantiles;
 }

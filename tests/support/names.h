@@ -1,4 +1,4 @@
-// Names of a test's parameters, where these cannot name themselves.
+// Names for test parameters that have no name themselves.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,7 +9,8 @@
 
 namespace poesy::test {
 
-/// For INSTANTIATE_TEST_SUITE_P: the names of its values, in their order. Throws std::out_of_range where one has none.
+/// A name function for INSTANTIATE_TEST_SUITE_P. names: of the values, in their order. The function throws
+/// std::out_of_range for a value without a name.
 inline auto named(std::vector<std::string> names) {
   return [names](const auto& made) { return names.at(made.index); };
 }

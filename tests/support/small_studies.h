@@ -32,8 +32,8 @@ namespace detail {
 
 struct SmallAnalysis {
   const char* name;
-  const char* keys;                ///< of [analysis]
-  const char* fidelity = "exact";  ///< of [mechanism]
+  const char* keys;                ///< text of [analysis]
+  const char* fidelity = "exact";  ///< in [mechanism]
 };
 
 inline constexpr SmallAnalysis kSmallAnalyses[] = {
@@ -113,7 +113,7 @@ inline SmallStudy small_study(const SmallAnalysis& analysis) {
 
 }  // namespace detail
 
-/// One study for each way in which studies keep states: each kind, adaptive samples, two fidelities and so on. Where
+/// One study for each way in which studies store states: each kind, adaptive samples, two fidelities and so on. If
 /// samples are drawn, the last unit is smaller than the others.
 inline std::span<const SmallStudy> small_studies() {
   static const std::vector<SmallStudy> all = [] {
@@ -124,7 +124,7 @@ inline std::span<const SmallStudy> small_studies() {
   return all;
 }
 
-/// The states of the study's stages at each moment at which its run could be stopped.
+/// The states of all stages after each merge of the study's run, from which the run can be resumed.
 inline std::vector<std::vector<Bytes>> states_of(const SmallStudy& small) {
   std::vector<std::vector<Bytes>> states;
   Checkpoints checkpoints([] { return true; },

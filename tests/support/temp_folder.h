@@ -11,7 +11,7 @@
 
 namespace poesy::test {
 
-/// A folder of its own for one test, removed with everything in it at the end.
+/// A temporary folder for one test. The destructor removes it with its content.
 class TempFolder {
  public:
   TempFolder() {
@@ -30,7 +30,7 @@ class TempFolder {
   std::string operator/(std::string_view name) const { return file(name); }
   std::string file(std::string_view name) const { return (path_ / name).string(); }
 
-  /// Writes a file of that name and returns its path.
+  /// Writes a file with this name and returns its path.
   std::string write(std::string_view name, std::string_view bytes) const {
     std::filesystem::remove(file(name));  // some file systems flush a file that is cut off and written again
     std::ofstream out(file(name), std::ios::binary);

@@ -4,9 +4,9 @@
 
 namespace poesy::test {
 
-/// The fake mechanism's description with one signed response, y = weight(p) e_p summed over its errors, to which the
-/// exact fidelity adds the quadratic term bend e_p^2. So an error of standard deviation s shifts the mean by bend s^2
-/// and has, if normal, the variance weight^2 s^2 + 2 bend^2 s^4. delta_2 acts on nothing.
+/// The fake mechanism with one signed response: the sum of kWeights[p] e_p over its errors. The exact fidelity adds the
+/// quadratic term bend e_p^2 for each error. So a normal error with the standard deviation s shifts the mean by bend
+/// s^2 and contributes the variance weight^2 s^2 + 2 bend^2 s^4. delta_2 has no effect.
 class TwoFidelitiesModel final : public FakeModel {
  public:
   static constexpr double kBend = 0.5;
@@ -56,7 +56,7 @@ class TwoFidelitiesModel final : public FakeModel {
   bool exact_;
 };
 
-/// A catalog of it alone.
+/// A catalog with only the TwoFidelitiesModel.
 inline Catalog two_fidelities_catalog() {
   return {{TwoFidelitiesModel::describe_both(), [](std::span<const double> /*geometry*/, std::size_t fidelity) {
              return std::make_unique<TwoFidelitiesModel>(fidelity == 0);

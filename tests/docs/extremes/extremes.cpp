@@ -80,7 +80,7 @@ struct Job {
     found.state(archive, 0, unit.first.value);
   }
   CellSums<Extremes> sums(const Plan& of, const Shard& shard) const { return {of, responses(), shard}; }
-  /// Unknown intervals, so adaptive samples go on to their max.
+  /// The intervals are unknown (NaN), so an adaptive study draws its maximum number of samples.
   auto estimates(const auto&, std::size_t) const { return std::vector(responses(), Estimate{kNaN, {kNaN, kNaN}}); }
 };
 
@@ -120,7 +120,7 @@ void read(const h5::File& file, StoredResult& result) {
   Extremes found;
   read_group(file, kGroup, found);
   found.solves = read_solver(file, kByPose);
-  result.varied = {std::string(kAllFactors)};  // so samples have addresses, which `poesy replay` takes
+  result.varied = {std::string(kAllFactors)};  // gives each sample an address for `poesy replay`
   result.failures = read_failures(file, result);
   result.found = std::move(found);
 }

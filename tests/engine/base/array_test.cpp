@@ -13,7 +13,7 @@ namespace {
 using Cube = Array<int, axis::Response, axis::Factor, axis::Pose>;
 constexpr Cube::Lengths kLengths{2, 3, 4};
 
-/// Elements count up in the order in which they lie.
+/// An array whose elements are 0, 1, 2, ... in the order of the memory.
 Cube counting() {
   std::vector<int> elements(24);
   std::iota(elements.begin(), elements.end(), 0);

@@ -61,7 +61,7 @@ TEST(Bytes, TextsAndBlocksComeBack) {
   EXPECT_EQ(from.left(), 0U);
 }
 
-/// Some of everything, more than a few pieces.
+/// Writes each kind of value, in all more bytes than several pieces hold.
 void write_some(ByteWriter& to) {
   constexpr std::size_t kPiece = ByteWriter::kPiece;
   to.number(kMost);

@@ -83,7 +83,7 @@ TEST(PlainFile, SaysWhyThereIsNone) {
 }
 
 TEST(PlainFile, SaysWhenTheDiskFails) {
-  const PlainFile memory("/proc/self/mem");  // a plain file of which nothing can be read at 0
+  const PlainFile memory("/proc/self/mem");  // a plain file, but reading at offset 0 fails
   ASSERT_TRUE(memory.is_open());
   std::array<std::byte, 8> bytes{};
   errno = 0;

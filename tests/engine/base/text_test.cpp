@@ -72,7 +72,7 @@ TEST(Printable, KeepsTextAndReplacesTheRest) {
   EXPECT_EQ(printable("\xE2\x82"), "??");  // cut off
 }
 
-/// A code point in UTF-8, in this many bytes, whether that is its form or not.
+/// A code point encoded as UTF-8 in `length` bytes, even if that is not its valid (shortest) form.
 std::string written_in(std::size_t length, std::uint32_t code) {
   constexpr unsigned char kLead[] = {0, 0, 0xC0, 0xE0, 0xF0};
   std::string bytes(length, '\0');
@@ -81,7 +81,7 @@ std::string written_in(std::size_t length, std::uint32_t code) {
   return bytes;
 }
 
-/// Every code point in every number of bytes that its bits fit into: one of them is its form, unless it has none.
+/// Tries each code point in each number of bytes that can hold its bits. At most one of these encodings is valid.
 TEST(Printable, TakesEachCodePointInItsShortestFormAlone) {
   constexpr std::uint32_t kBeyond[] = {0, 0, 1U << 11U, 1U << 16U, 1U << 21U};
   for (std::size_t length = 2; length <= 4; ++length) {

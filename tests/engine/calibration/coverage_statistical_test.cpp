@@ -13,7 +13,7 @@ constexpr std::size_t kMachines = 4000;
 constexpr double kSigma = 0.3e-3;  // m, of each error
 constexpr double kNoise = 5e-6;    // m, of a height
 
-/// The printer with 3 end stops and its radius, whose heights are measured at seven places.
+/// A delta printer (delta-puu.toml) whose heights are measured at seven places. Fitted: three end stops and the radius.
 class Coverage : public testing::Test {
  protected:
   Coverage() : model_(model_of(mechanism_text("delta-puu.toml"))), machine_(*model_, {}) {
@@ -26,7 +26,8 @@ class Coverage : public testing::Test {
     }
   }
 
-  /// The share of intervals that hold the true value, by fitted number. sigma: of the true numbers.
+  /// For each fitted number, the share of machines whose interval contains the true value. sigma: standard deviations
+  /// of the true values (m).
   Vector held(const Prior& prior, const Vector& sigma, const InferenceOptions& options) {
     std::vector<MeasuredPose> at;
     std::vector<MeasuredValue> values;
@@ -72,7 +73,7 @@ TEST_F(Coverage, OfEstimatedNoiseByStudentsT) {
 }
 
 TEST_F(Coverage, WithTheTolerancesAsPrior) {
-  // The radius is a sum of three equal errors of kSigma.
+  // The radius is the mean of three independent errors with the standard deviation kSigma.
   Vector sigma = Vector::Constant(4, kSigma);
   sigma(3) /= std::sqrt(3.0);
   const Prior prior{sigma.cwiseInverse().asDiagonal(), Vector::Zero(4)};

@@ -26,7 +26,7 @@ TEST(DriveCorrection, LeavesNothingOfSixFreedoms) {
   EXPECT_GT(components(*found, nominal).cwiseAbs().maxCoeff(), 1e-5);
 }
 
-/// Without errors the drives stay where they are.
+/// Without errors the corrected drive pose is the commanded pose.
 TEST(DriveCorrection, OfNoErrorsIsThePoseItself) {
   const auto model = model_of(mechanism_text("delta-puu.toml"));
   ExactMachine machine(*model, {});
@@ -37,7 +37,8 @@ TEST(DriveCorrection, OfNoErrorsIsThePoseItself) {
   for (std::size_t c = 0; c < pose.size(); ++c) EXPECT_NEAR((*drive_at)[c], pose[c], 1e-13);
 }
 
-/// The gain of one value of noise s on one number of information q is log2(1 + 1 / (q s^2)) / 2.
+/// One fitted number with information q, and one measured value y = a x with the noise sigma 1: the gain is log2(1 +
+/// a^2 / q) / 2 bits.
 TEST(NextPoses, HaveTheGainOfOneNumber) {
   const Matrix information = Matrix::Constant(1, 1, 4.0);
   const auto chosen = next_poses(information, {Matrix::Constant(1, 1, 1.0), Matrix::Constant(1, 1, 3.0)}, 1, 2);
@@ -48,7 +49,8 @@ TEST(NextPoses, HaveTheGainOfOneNumber) {
   EXPECT_NEAR(chosen[1].gain, 0.5 * std::log2(1.0 + 9.0 / 13.0), 1e-14);
 }
 
-/// What the columns of a frame explain tells nothing: only their Schur complement counts.
+/// The first column is an error, the second an unknown of the measuring frame. The gain counts only the information on
+/// the error that remains after the frame is eliminated (Schur complement).
 TEST(NextPoses, CountWhatTheFrameLeaves) {
   const Matrix information = Matrix::Identity(2, 2);
   const Matrix row{{2.0, 1.0}};

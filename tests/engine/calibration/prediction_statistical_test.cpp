@@ -1,4 +1,5 @@
-// How often what calibrate predicts of a machine holds its true value, with more errors than are fitted.
+// Coverage of the intervals that calibrate predicts for a machine: how often they contain the true value if more errors
+// vary than are fitted.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -13,19 +14,19 @@ namespace {
 
 constexpr std::size_t kMachines = 1000;
 constexpr double kLevel = 0.95;
-constexpr double kQuantile = 1.959963984540054;  // of the standard normal, for intervals of 95 %
+constexpr double kQuantile = 1.959963984540054;  // of the standard normal, for two-sided 95 % intervals
 
-/// What is measured of machines, and where.
+/// The measured components of each machine and the poses at which they are measured.
 struct Measuring {
   std::vector<std::vector<double>> poses;
-  std::vector<std::size_t> components;  ///< positions among kComponents
+  std::vector<std::size_t> components;  ///< indices of the measured components in kComponents
   double noise;                         ///< m
   double noise_of_angles = 0.0;         ///< rad
   Frame frame = Frame::known;
-  Vector place = Vector();  ///< true numbers of the frame
+  Vector place = Vector();  ///< true values of the frame's unknowns (m, slopes); empty for Frame::known
 };
 
-/// Machines of one mechanism with normal errors, of which some are fitted.
+/// Machines of one mechanism. All `varied` errors are normal; only the `fitted` combinations of errors are fitted.
 class Machines {
  public:
   Machines(const std::string& mechanism, const std::vector<std::vector<std::string>>& fitted,
@@ -48,14 +49,15 @@ class Machines {
     }
   }
 
-  /// Prior knowledge by the tolerances.
+  /// The prior with the standard deviations of the directions.
   static Prior prior_of(const FittedDirections& directions) {
     return {directions.scale.cwiseInverse().asDiagonal(), Vector::Zero(directions.scale.size())};
   }
   const FittedDirections& fitted() const { return fitted_; }
   const FittedDirections& all() const { return all_; }
 
-  /// Intervals of estimates of all errors, with this prior.
+  /// For each error, the share of machines whose interval of the estimate contains the true error. All errors are
+  /// fitted with this prior.
   Vector held_by_estimates(const Measuring& measuring, const Prior& prior) {
     const Eigen::Index k = all_.F.cols();
     Measurement measurement = measured(measuring);
@@ -74,8 +76,9 @@ class Machines {
     return count / static_cast<double>(kMachines);
   }
 
-  /// Intervals of what a controller with the fitted numbers leaves of these components at these poses, [component,
-  /// pose]. prior: of the fit.
+  /// [poses x components] The share of machines whose predicted interval contains the true remaining error of a
+  /// component, after a controller has corrected the machine with the fitted numbers. prior: for the fit of these
+  /// numbers.
   Vector held_by_predictions(const Measuring& measuring, const Prior& prior, const CoordinateError& commanded,
                              const std::vector<std::vector<double>>& poses,
                              const std::vector<std::size_t>& components) {
@@ -131,7 +134,7 @@ class Machines {
     return sd;
   }
 
-  /// [values x machines] What is measured of machines with these errors.
+  /// [values x machines] The measured values, with noise, of machines. theta: [errors x machines] the errors (m, rad).
   Matrix values_of(const Measurement& measurement, const Measuring& measuring, const Matrix& theta) {
     const auto displacements = measurement.displacements(Matrix(all_.F * theta));
     const auto values = static_cast<Eigen::Index>(measurement.size());
@@ -148,7 +151,7 @@ class Machines {
   FittedDirections fitted_;
 };
 
-/// The printer of which 12 errors of this sigma vary (m), and end stops and radius are fitted.
+/// The delta printer. 12 errors vary with this standard deviation (m); the three end stops and the radius are fitted.
 Machines printer(double sigma) {
   return {mechanism_text("delta-puu.toml"),
           {{"zero_1"}, {"zero_2"}, {"zero_3"}, {"foot_x_1", "foot_x_2", "foot_x_3"}},
@@ -179,9 +182,9 @@ TEST(CoverageOfPredictions, AfterLeastSquares) {
                  kMachines);
 }
 
-/// As the device sees it, whose bed is tilted and too high. Errors are 0.1 mm. Of errors of 0.3 mm intervals of z hold
-/// it in 93 % of the machines, because slopes of the bed that the measurements hardly tell, times x and y that are not
-/// measured, are of second order.
+/// The heights are measured from a bed of unknown height and tilt. The errors have sigma 0.1 mm. With 0.3 mm the
+/// intervals of z contain the true value for only 93 % of the machines, because they ignore second-order terms: the
+/// product of the bed's slopes, which the heights hardly determine, with errors of x and y, which are not measured.
 TEST(CoverageOfPredictions, OverAnUnknownPlane) {
   Machines machines = printer(0.1e-3);
   Vector plane(3);
@@ -193,8 +196,8 @@ TEST(CoverageOfPredictions, OverAnUnknownPlane) {
                  kMachines);
 }
 
-/// An over-constrained mechanism: ten errors, of which most deform it. Its platform is where the mismatch of its limbs
-/// is least by the metric, or their energy if the file states stiffness.
+/// An over-constrained mechanism with ten errors, most of which deform it. The pose of its platform minimises the
+/// mismatch of the limbs in the metric, or their elastic energy if the file states stiffness.
 Machines over_constrained(const std::string& file) {
   const std::vector<std::string> varied{"delta_1_0_z", "delta_1_0_y",   "epsilon_1_4_z", "delta_1_4_x",
                                         "delta_2_0_z", "epsilon_2_1_x", "delta_2_4_y",   "delta_3_0_x",
@@ -226,7 +229,7 @@ TEST_P(OverConstrained, OfEstimatesWithPrior) {
 
 TEST_P(OverConstrained, OfPredictions) {
   Machines machines = over_constrained(GetParam());
-  /// z, and the rotations about x and then y.
+  /// The commanded coordinates: z, and the rotations about x and then y.
   const auto commanded = [](const Placement& nominal, const Displacement& by) {
     const auto coordinates = [](const Matrix3& turn, double z) {
       return Vector3(z, std::atan2(-turn(1, 2), turn(2, 2)), std::asin(turn(0, 2)));
@@ -239,8 +242,8 @@ TEST_P(OverConstrained, OfPredictions) {
       kMachines);
 }
 
-/// A hexapod of which the lengths of the struts and coordinates of the joints on base and platform are fitted, from
-/// whole poses.
+/// A hexapod measured in all six components. The errors are the strut lengths and one coordinate of each joint centre
+/// on the base and on the platform.
 TEST(CoverageOfHexapod, OfEstimates) {
   std::vector<std::string> varied;
   std::vector<std::vector<std::string>> fitted;

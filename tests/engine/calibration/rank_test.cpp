@@ -8,7 +8,7 @@
 namespace poesy::calibration {
 namespace {
 
-/// Generic poses of the hexapod: they follow no pattern, and stay in its workspace.
+/// Irregular poses within the workspace of the hexapod.
 std::vector<MeasuredPose> generic_poses(std::size_t count) {
   std::vector<MeasuredPose> poses;
   const auto irregular = [](std::size_t n, std::size_t c) {
@@ -23,7 +23,7 @@ std::vector<MeasuredPose> generic_poses(std::size_t count) {
   return poses;
 }
 
-/// The hexapod of Nategh and Agheli with a tool off its origin and its 42 errors.
+/// The hexapod of Nategh and Agheli with its 42 errors. The tool point is not at the origin of the platform.
 class Rank : public testing::Test {
  protected:
   Rank() : model_(model_of(with_tool())), machine_(*model_, {}) {
@@ -36,7 +36,7 @@ class Rank : public testing::Test {
     return text.replace(text.find("rotation "), 0, "tool = [\"30 mm\", \"-20 mm\", \"70 mm\"]\n");
   }
 
-  /// The rank if these components are measured at 60 poses.
+  /// The rank of the identification problem if these components are measured at 60 poses.
   std::size_t rank(const std::vector<std::size_t>& components, Frame frame, Target target) {
     const std::vector<MeasuredPose> poses = generic_poses(60);
     std::vector<MeasuredValue> values;

@@ -12,7 +12,7 @@
 
 namespace poesy::calibration {
 
-/// The text of a mechanism among the data of the tests.
+/// The text of a mechanism file in this folder of the test data.
 inline std::string mechanism_text(const std::string& name, const std::string& folder = "calibration") {
   std::ifstream file(std::filesystem::path(POESY_TEST_DATA) / folder / name);
   std::stringstream text;
@@ -20,7 +20,7 @@ inline std::string mechanism_text(const std::string& name, const std::string& fo
   return text.str();
 }
 
-/// The model of a mechanism's text.
+/// The model of a mechanism file with its published geometry. text: content of the file.
 inline std::unique_ptr<Model> model_of(const std::string& text) {
   const CatalogEntry entry = registry().from_text(text, "mechanism.toml");
   std::vector<double> geometry;
@@ -28,7 +28,7 @@ inline std::unique_ptr<Model> model_of(const std::string& text) {
   return entry.build(geometry, 0);
 }
 
-/// Columns F for the errors of these names, each with its factor 1.
+/// [errors x fitted] The matrix F: column j has the entry 1 at each error that fitted[j] names, else 0.
 inline Matrix columns_for(const Model& model, const std::vector<std::vector<std::string>>& fitted) {
   const ModelDescription& description = model.description();
   Matrix F =
@@ -41,7 +41,7 @@ inline Matrix columns_for(const Model& model, const std::vector<std::vector<std:
   return F;
 }
 
-/// Directions with one scale.
+/// Fitted directions F that all have the same scale (standard deviation in m or rad).
 inline FittedDirections directions_for(const ExactMachine& machine, const Matrix& F, double scale) {
   return {F, Vector::Constant(F.cols(), scale), difference_steps(machine, F)};
 }

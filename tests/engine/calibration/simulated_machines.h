@@ -25,8 +25,9 @@ inline Matrix normal_matrix(std::size_t stream, Eigen::Index rows, Eigen::Index 
   return Eigen::Map<const Matrix>(numbers.data(), rows, columns);
 }
 
-/// These are shares of `machines` intervals of 95 % that hold the true value. A share of 4000 machines has a standard
-/// error of 0.35 points; 4.3 of them are 1.5 points, alpha = 2e-5 for each.
+/// Expects that each share is 0.95 within 4.3 standard errors (alpha = 2e-5). shares: for each number, the share of
+/// `machines` 95 % intervals that contain the true value. Example: with 4000 machines 4.3 standard errors are 1.5
+/// percentage points.
 inline void expect_nominal(const Vector& shares, std::size_t machines) {
   const double standard_error = std::sqrt(0.95 * 0.05 / static_cast<double>(machines));
   for (Eigen::Index j = 0; j < shares.size(); ++j) EXPECT_NEAR(shares(j), 0.95, 4.3 * standard_error) << j;

@@ -31,7 +31,7 @@ class StudiedMachines : public testing::Test {
     std::rotate(poses_.begin(), poses_.end() - 1, poses_.end());
   }
 
-  /// The places of the oracle are rounded to 0.1 mm.
+  /// The pose on the circle of 50 mm, rounded to 0.1 mm as in the other program.
   static std::vector<double> pose_at(double angle) {
     const auto rounded = [](double length) { return std::round(length * 1e4) / 1e4; };
     return {rounded(0.05 * std::cos(angle)), rounded(0.05 * std::sin(angle)), 0.0};
@@ -59,7 +59,7 @@ class StudiedMachines : public testing::Test {
     return {machine_, at, values, Frame::known, Target::known};
   }
 
-  /// [F] The errors of a machine, in the order of the model.
+  /// The errors of a machine in the order of the model's errors. list: in the order of the other program.
   Vector errors_of(const nlohmann::json& list) const {
     Vector errors = Vector::Zero(index(machine_.errors()));
     for (std::size_t n = 0; n < list.size(); ++n) {
@@ -74,8 +74,8 @@ class StudiedMachines : public testing::Test {
   std::vector<std::vector<double>> poses_;
 };
 
-/// Estimates by the expansion are those of the other program to a share of 3e-4 of the tolerance, because its
-/// derivatives are exact but for the square of the errors over the lengths.
+/// Fits with the expansion agree with the other program to 3e-4 of each scale, because the expansion neglects terms of
+/// second order in error over length. Exact fits agree to 1e-11 m.
 TEST_F(StudiedMachines, AreFittedByTheExpansion) {
   for (const nlohmann::json& one : delta_.at("machines")) {
     const FittedDirections directions = directions_of(one.at("fit"));
@@ -99,7 +99,8 @@ TEST_F(StudiedMachines, AreFittedByTheExpansion) {
   }
 }
 
-/// What controllers with the other program's estimates leave is what that found.
+/// After a correction with the other program's estimates, the remaining pose errors are those that the other program
+/// found.
 TEST_F(StudiedMachines, AreLeftWhereTheOtherProgramFindsThem) {
   CorrectedEvaluator evaluator(*model_, {}, coordinates_of_components({3, 4, 5}), Frame::known);
   const std::size_t responses = machine_.model().description().responses.size();
@@ -132,7 +133,7 @@ TEST_F(StudiedMachines, AreLeftWhereTheOtherProgramFindsThem) {
           const auto row =
               std::ranges::find(machine_.model().description().responses, kComponents[c], &Response::name) -
               machine_.model().description().responses.begin();
-          // The last step of the correction leaves up to 1e-11.
+          // The iteration of the correction stops within 1e-11 (m, rad).
           EXPECT_NEAR(rows[static_cast<std::size_t>(row) * count + s], one.at("remaining")[s][m][c].get<double>(),
                       5e-11)
               << kComponents[c] << " pose " << m << " machine " << s;
@@ -142,7 +143,7 @@ TEST_F(StudiedMachines, AreLeftWhereTheOtherProgramFindsThem) {
   }
 }
 
-/// A machine that was not calibrated has no solution, and does not disturb the others.
+/// A machine whose fit failed (NaN estimates) has no solution and does not disturb the other machines.
 TEST_F(StudiedMachines, HaveNoSolutionWithoutAFit) {
   CorrectedEvaluator evaluator(*model_, {}, coordinates_of_components({3, 4, 5}), Frame::known);
   Controllers controllers{Matrix::Zero(index(machine_.errors()), 2), Matrix(0, 2)};

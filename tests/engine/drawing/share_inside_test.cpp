@@ -10,7 +10,7 @@
 
 #include "engine/drawing/zone_scatter.h"
 
-// Against numbers of another program in tests/data/drawing.json, and against draws.
+// Compares share_inside() with the numbers of another program (tests/data/drawing.json) and with random draws.
 namespace poesy::drawing {
 namespace {
 
@@ -44,7 +44,7 @@ TEST(ShareInside, IsThatOfTheOracle) {
   EXPECT_EQ(found, 2);
 }
 
-/// Draws of features, by the definitions of their zones.
+/// The share of random features that are inside the zone, by the definition of the zone.
 double drawn(const Feature& feature, ZoneClass of, double sigmas) {
   constexpr int kDraws = 400000;
   std::mt19937_64 bits(5);
@@ -81,7 +81,8 @@ TEST(ShareInside, IsThatOfDrawsByTheZonesDefinition) {
         Feature feature = feature_of(kind, 1.0, orientation);
         feature.one_direction = one_direction;
         for (const ZoneClass of : {ZoneClass::location, ZoneClass::orientation}) {
-          if (of == ZoneClass::orientation && (orientation == 0.0 || orientation == 0.9)) continue;  // none, or void
+          // There is no zone of orientation (0.0), or it has no effect beside the zone of location (0.9).
+          if (of == ZoneClass::orientation && (orientation == 0.0 || orientation == 0.9)) continue;
           const double share = share_inside(feature, of, 1.7);
           // Five standard errors of 400 000 draws: alpha = 6e-7.
           EXPECT_NEAR(drawn(feature, of, 1.7), share, 5.0 * std::sqrt(share * (1.0 - share) / 400000.0));
@@ -92,7 +93,7 @@ TEST(ShareInside, IsThatOfDrawsByTheZonesDefinition) {
 }
 
 TEST(ShareInside, OfADistanceKnowsItsShift) {
-  // Limits 1 +- 1/4 from the mean in tolerances, sigma = 0.75 / 3.
+  // In units of the tolerance: the mean is 0.25, sigma is 0.75 / 3, and the limits are -1 and 1.
   const double expected = 0.5 * (std::erf(3.0 / std::sqrt(2.0)) + std::erf(5.0 / std::sqrt(2.0)));
   EXPECT_NEAR(share_inside(feature_of(FeatureKind::distance, 1.0, 0.0), ZoneClass::size, 3.0, 0.25), expected, 1e-15);
 }

@@ -11,7 +11,8 @@
 #include "engine/drawing/zone_moments.h"
 #include "engine/drawing/zone_scatter.h"
 
-// Closed values of tests/data/drawing.json, by another program, and random points of zones.
+// Compares worst cases with the closed-form values of another program (tests/data/drawing.json) and with random points
+// of the zones.
 namespace poesy::drawing {
 namespace {
 
@@ -54,7 +55,7 @@ TEST(WorstCase, IsTheSupportFunctionOfTheOracle) {
   EXPECT_EQ(compared, 8u);
 }
 
-/// Whether errors are in the feature's zones.
+/// Whether the errors e keep the feature within its zones.
 bool is_inside(const Feature& made, const OfErrors& e) {
   constexpr double kSlack = 1e-9;
   const double t = made.location ? made.location->size : 1e9;
@@ -76,7 +77,7 @@ bool is_inside(const Feature& made, const OfErrors& e) {
   return false;
 }
 
-/// The extreme errors are in the zone, and no other point of it has a larger effect.
+/// The errors of the worst case are inside the zones, and no random point inside has a larger effect.
 TEST(WorstCase, IsTheLargestOfAllPointsOfTheZone) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -119,7 +120,8 @@ ZoneSquares squares_of(const Feature& feature, const OfErrors& squares) {
   return zone_squares(feature, scatter, scatter_sigmas(feature, scatter), squares);
 }
 
-/// The worst division of a zone is never below the even one; where the middle alone acts it is twice it.
+/// The worst division gives the whole zone of location to either the middle or the tilt of the axis. If only the middle
+/// has an effect, the mean square is twice that of the even division.
 TEST(WorstCase, DividesAZoneAtWorstByOneUseAlone) {
   const Feature axis = feature(FeatureKind::axis, 1.0, {});
   EXPECT_NEAR(squares_of(axis, {1.0, 1.0, 0.0, 0.0}).worst, 2.0 / 36.0, 1e-16);
@@ -130,7 +132,7 @@ TEST(WorstCase, DividesAZoneAtWorstByOneUseAlone) {
   EXPECT_NEAR(squares_of(oriented, {0.0, 0.0, 1.0, 1.0}).worst, 2.0 * 0.16 / 9.0, 1e-16);
 }
 
-/// A length is the largest over directions: of discs it is the sum of their radii.
+/// The largest length is the maximum over all directions. For two balls it is the sum of their radii.
 TEST(WorstCase, OfALengthTurnsAllFeaturesOneWay) {
   const std::vector<Feature> features{feature(FeatureKind::point, 2.0, {}), feature(FeatureKind::point, 1.0, {})};
   const std::vector<OfErrors> unit{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};

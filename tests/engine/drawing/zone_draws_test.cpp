@@ -14,8 +14,8 @@
 #include "engine/random/normal_quantile.h"
 #include "engine/random/stream.h"
 
-// Features that are drawn as a whole: against draws of another program in tests/data/drawing.json, and by the
-// definitions of zones.
+// Features whose errors are drawn together. The draws are compared with those of another program
+// (tests/data/drawing.json) and with the definitions of the zones.
 namespace poesy::drawing {
 namespace {
 
@@ -146,7 +146,7 @@ class Scattered : public testing::TestWithParam<Scattering> {};
 
 constexpr std::size_t kDraws = 200'000;
 
-/// [errors][kDraws]
+/// [errors][kDraws] Random errors of the feature (m).
 std::vector<std::vector<double>> draws_of(const Scattering& one) {
   std::vector<std::vector<double>> errors(one.feature.errors().size(), std::vector<double>(kDraws));
   std::vector<std::span<double>> rows;
@@ -158,7 +158,7 @@ std::vector<std::vector<double>> draws_of(const Scattering& one) {
   return errors;
 }
 
-/// Holds with a probability of 1 - 1e-6 if the mean of these numbers is `expected`.
+/// Expects that the mean of these numbers is `expected`, within 4.9 standard errors (alpha = 1e-6).
 void expect_mean(const std::vector<double>& numbers, double expected, const std::string& what) {
   constexpr double kQuantile = 4.9;
   double sum = 0.0;
@@ -172,7 +172,8 @@ void expect_mean(const std::vector<double>& numbers, double expected, const std:
   EXPECT_LE(std::abs(sum / n), kQuantile * error) << what;
 }
 
-/// Means, variances and covariances of draws are those that the study counts with, and all draws are in the zones.
+/// The means are zero, the variances are those of scatter_sigmas(), the covariances are zero, and all draws are inside
+/// the zones.
 TEST_P(Scattered, HaveTheirMoments) {
   const Scattering& one = GetParam();
   const std::vector<std::vector<double>> errors = draws_of(one);
@@ -196,7 +197,7 @@ TEST_P(Scattered, HaveTheirMoments) {
   EXPECT_EQ(outside, 0u);
 }
 
-/// Which draws are made together does not change them.
+/// The draw of one sample does not depend on which samples are drawn with it.
 TEST_P(Scattered, DependOnTheSample) {
   const Scattering& one = GetParam();
   const std::vector<std::vector<double>> errors = draws_of(one);
@@ -214,11 +215,11 @@ const auto kName = [](const auto& one) { return name_of(one.param); };
 
 INSTANTIATE_TEST_SUITE_P(Zones, Scattered, testing::ValuesIn(scatterings()), kName);
 
-/// Of a uniform feature every part of the zone has its share of the volume: axes with a lean below a length.
+/// Uniform draws fill the zone evenly. Compares the share of axes in one part of the zone with rejection sampling.
 TEST(ZoneDraws, FillTheZoneEvenly) {
   const std::vector<std::vector<double>> errors =
       draws_of({"Axis", feature_of(axis, 2.0, 1.0), {.shape = ScatterShape::uniform}});
-  std::vector<double> is_below;  // both ends of axes that lean less: by rejection from the box
+  std::vector<double> is_below;  // 1 if the axis is in the part of the zone with a lean below 0.5 and x above 0.2
   for (std::size_t b = 0; b < kDraws; ++b) {
     is_below.push_back(std::hypot(errors[2][b], errors[3][b]) < 0.5 && errors[0][b] > 0.2 ? 1.0 : 0.0);
   }
@@ -243,7 +244,8 @@ TEST(ZoneDraws, FillTheZoneEvenly) {
   EXPECT_LE(std::abs(found - share), 4.9 * std::sqrt(variance));
 }
 
-/// The share of first attempts that inspection keeps is the share of normals inside.
+/// Inspected features keep the first normal draw that is inside the zone. So the share of samples that keep their very
+/// first draw is the share of normal draws inside.
 TEST(ZoneDraws, KeepTheFirstAttemptThatIsInside) {
   const Feature bore = feature_of(axis, 0.05, 0.0);
   const ZoneScatter scatter{.shape = ScatterShape::inspected, .sigmas = 3.0};

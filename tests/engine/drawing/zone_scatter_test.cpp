@@ -5,7 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-// Closed values of tests/data/drawing.json, by another program.
+// Compares zone scatter with the closed-form values of another program (tests/data/drawing.json).
 namespace poesy::drawing {
 namespace {
 
@@ -85,8 +85,8 @@ TEST(ZoneScatter, OfAClearanceIsThatOfAnEndInADisc) {
   }
 }
 
-/// The end of an axis and the corner of a plane have half the zone over sigmas as the standard deviation of a
-/// coordinate, however location and orientation share it.
+/// A coordinate of the end of an axis, or of the corner of a plane, has the standard deviation (half the zone) /
+/// sigmas. This holds for every ratio of the zone of orientation to the zone of location.
 TEST(ZoneScatter, KeepsWhatAnExtremePointMayDo) {
   for (const double share : {0.1, 0.4, 0.69, 0.9}) {
     const FeatureSigmas axis = feature_sigmas(feature(FeatureKind::axis, 1.0, share), 3.0);

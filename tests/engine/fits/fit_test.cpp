@@ -18,7 +18,7 @@ void expect_limits(const std::string& text, double lower, double upper) {
   EXPECT_NEAR(found.upper * 1e6, upper, 1e-9) << text;
 }
 
-/// What the exception says.
+/// The message of the exception that `read` throws for this text.
 template <class Read>
 std::string problem(const Read& read, const std::string& text) {
   try {
@@ -29,7 +29,7 @@ std::string problem(const Read& read, const std::string& text) {
   return "";
 }
 
-// ISO 286-2:2010, Tables 6 and 17 to 22, in micrometres.
+// Limits from ISO 286-2:2010, Tables 6 and 17 to 22. The deviations are in micrometres.
 TEST(Fits, HaveTheLimitsOfThePrintedTables) {
   expect_limits("217 h6", -29, 0);
   expect_limits("20 H7", 0, 21);
@@ -57,7 +57,7 @@ TEST(Fits, ReadTheWaysOfWritingThem) {
   expect_limits("10 h0", -0.6, 0);
 }
 
-// Limits by hand from the tables; the variance of 20 H7/g6 is (21^2 + 13^2) / 36.
+// Computed by hand from the tables (micrometres). Example: the variance of 20 H7/g6 is (21^2 + 13^2) / 36.
 TEST(Fits, HaveTheClearanceOfHoleAndShaft) {
   struct Row {
     const char* text;

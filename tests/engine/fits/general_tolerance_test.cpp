@@ -9,7 +9,8 @@
 namespace poesy {
 namespace {
 
-/// A printed row of a table: its values for lengths above the end of the row before, in mm; 0: a dash.
+/// A row of a printed table: the values (mm) for lengths above `up_to` of the row before, and at most `up_to` (mm). A
+/// value of 0 means that the standard prints a dash.
 struct PrintedRow {
   double up_to;
   std::vector<double> value;
@@ -24,7 +25,7 @@ void expect_value(std::optional<double> found, double printed, double length) {
   }
 }
 
-/// Both ends of every row.
+/// Checks the table at both ends of the range of each row. least: where the first range begins (mm).
 template <class Found>
 void expect_table(const std::vector<PrintedRow>& table, double least, const Found& found) {
   double from = least;
@@ -41,7 +42,7 @@ void expect_table(const std::vector<PrintedRow>& table, double least, const Foun
   }
 }
 
-// ISO 2768-1:1989, Table 1, by columns: f, m, c, v.
+// ISO 2768-1:1989, Table 1 (mm). The columns are the classes f, m, c and v.
 TEST(GeneralTolerances, OfLengthsAreThoseOfPartOne) {
   expect_table({{3, {0.05, 0.1, 0.2, 0}},
                 {6, {0.05, 0.1, 0.3, 0.5}},
@@ -56,7 +57,7 @@ TEST(GeneralTolerances, OfLengthsAreThoseOfPartOne) {
   EXPECT_FALSE(general_length_tolerance(0.49e-3, GeneralLengthClass::f));
 }
 
-// ISO 2768-2:1989, Tables 1 to 4, by columns: H, K, L.
+// ISO 2768-2:1989, Tables 1 to 4 (mm). The columns are the classes H, K and L.
 TEST(GeneralTolerances, OfZonesAreThoseOfPartTwo) {
   const auto zone = [](GeneralZone of) {
     return [of](double length, std::size_t k) { return general_zone(of, length, GeneralZoneClass(k)); };

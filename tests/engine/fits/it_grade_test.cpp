@@ -10,10 +10,10 @@
 namespace poesy {
 namespace {
 
-/// ISO 286-1:2010, Table 1, as printed.
+/// A row of ISO 286-1:2010, Table 1.
 struct PrintedRow {
-  double up_to;                    ///< mm
-  std::array<int, 10> micrometre;  ///< IT5 to IT14
+  double up_to;                    ///< the largest nominal size, mm
+  std::array<int, 10> micrometre;  ///< the tolerances of IT5 to IT14
 };
 const std::vector<PrintedRow> kPrinted{
     {3, {4, 6, 10, 14, 25, 40, 60, 100, 140, 250}},         {6, {5, 8, 12, 18, 30, 48, 75, 120, 180, 300}},
@@ -29,7 +29,8 @@ const std::vector<double> kSteps{3,   6,   10,  18,  30,   50,   80,   120,  180
 
 ItGrade grade_of(int number) { return ItGrade{static_cast<int>(ItGrade::it1) + number - 1}; }
 
-/// The standard's formula in micrometres, before rounding. number: 5 to 18.
+/// The tolerance (micrometres) of grade IT`number` (5 to 18) by the standard's formula, before rounding. above, up_to:
+/// the range of nominal sizes (mm).
 double by_formula(double above, double up_to, int number) {
   const double size = std::sqrt((above == 0.0 ? 1.0 : above) * up_to);
   const double factor = up_to <= 500.0 ? 0.45 * std::cbrt(size) + 0.001 * size : 0.004 * size + 2.1;
@@ -53,7 +54,8 @@ TEST(ItGrades, AreThoseOfThePrintedTable) {
   }
 }
 
-// The formula, rounded as the table is, gives another value for 20 of the 130 above: up to 15 % less up to 3 mm.
+// The printed values differ from the formula, because the standard rounds them: the formula gives up to 14 % less for
+// sizes up to 3 mm, and at most 8.5 % less for larger sizes.
 TEST(ItGrades, AreNearTheFormula) {
   double above = 0.0;
   for (const double up_to : kSteps) {
@@ -73,7 +75,7 @@ TEST(ItGrades, HaveTheFinestValues) {
   EXPECT_DOUBLE_EQ(it_grade_width(0.063, ItGrade::it1).value(), 2e-6);
   EXPECT_DOUBLE_EQ(it_grade_width(0.15, ItGrade::it2).value(), 5e-6);
   EXPECT_DOUBLE_EQ(it_grade_width(3.0, ItGrade::it4).value(), 68e-6);
-  // IT01, IT0 and IT1 have formulas up to 500 mm, whose values are rounded to preferred numbers.
+  // For nominal sizes up to 500 mm, the standard rounds the formulas of IT01, IT0 and IT1 to preferred numbers.
   double above = 0.0;
   for (std::size_t k = 0; kSteps[k] <= 500.0; ++k) {
     const double size = std::sqrt((k == 0 ? 1.0 : above) * kSteps[k]);

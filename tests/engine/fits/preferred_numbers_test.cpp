@@ -10,7 +10,7 @@ namespace {
 
 using enum PreferredSeries;
 
-/// ISO 3:1973, Table 1, R10, as printed.
+/// The series R10 from ISO 3:1973, Table 1.
 constexpr std::array kPrinted{1.00, 1.25, 1.60, 2.00, 2.50, 3.15, 4.00, 5.00, 6.30, 8.00, 10.00};
 
 TEST(PreferredNumbers, AreThoseOfTheStandard) {
@@ -22,8 +22,8 @@ TEST(PreferredNumbers, AreThoseOfTheStandard) {
   }
 }
 
-/// A number of a series is a power of the root of ten, rounded by at most 1.3 %, and a coarser series is in a finer
-/// one.
+/// Each preferred number is within 1.3 % of a power of the root of ten (R5: fifth root), and all numbers of R5 and R10
+/// are also in R20.
 TEST(PreferredNumbers, AreNearPowersOfARootOfTen) {
   for (const auto& [series, count] : {std::pair(r5, 5), std::pair(r10, 10), std::pair(r20, 20)}) {
     double number = 1.0;

@@ -24,9 +24,9 @@
 
 namespace poesy::test {
 
-/// Results of the fake mechanism with made-up numbers that name their own place, so that a script in another language
-/// knows what to expect: element (r, p, m) of array k is 1000 k + 100 r + 10 p + m / 8, and the last of all is NaN.
-/// Two more details share one list of components, so that axes are shared too.
+/// Results of the fake mechanism with made-up numbers. A script in another language can check them, because the number
+/// tells its index: element (r, p, m) of array k is 1000 k + 100 r + 10 p + m / 8; the last element is NaN. The
+/// description has two details with the same list of components, so that they share an axis in the file.
 class Example {
  public:
   static constexpr std::size_t kPoses = 4;
@@ -103,7 +103,8 @@ class Example {
                        {1, PoseIndex(3), {SampleIndex(99), SolveStatus::non_finite}}};
     return result;
   }
-  /// Fills arrays of these lengths with numbers that go on from `next`, of which the last one is NaN.
+  /// A function that fills an array of given lengths with numbers in steps of `step`, continuing from `next`. The last
+  /// element becomes NaN.
   static auto filler(double& next, double step = 0.125) {
     return [&next, step]<class Numbers>(Numbers& numbers, const typename Numbers::Lengths& lengths) {
       make_room(lengths, numbers);
@@ -112,7 +113,7 @@ class Example {
     };
   }
 
-  /// Two quantiles; sets the study's kind and levels to match. Numbers count on through the arrays.
+  /// A Monte Carlo result with two quantiles. Sets the study to match. The numbers count up through all arrays.
   MonteCarloResult monte_carlo() {
     study.analysis.kind = &kMonteCarloStudy;
     asked_of<MonteCarloOptions>(study.analysis).quantiles = {0.05, 0.995};
@@ -158,7 +159,7 @@ class Example {
     return result;
   }
 
-  /// The same of 200 machines, judged by their yield; the second response has a limit.
+  /// A Monte Carlo result of 200 machines that are judged by their yield. The second response has a limit.
   MonteCarloResult machines() {
     MonteCarloResult result = monte_carlo();
     study.analysis.draws = Draws::per_machine;
@@ -222,14 +223,14 @@ class Example {
     return result;
   }
 
-  /// Of two errors on two responses. fill(list, length): gives a list its numbers.
+  /// Fills the main effects of two errors on two responses. fill(array, lengths): fills an array with numbers.
   template <class Fill>
   static void fill_effects(MainEffects& effects, const Fill& fill) {
     for (auto* list : {&effects.s1, &effects.s1_ci_low, &effects.s1_ci_high}) fill(*list, {2, 2});
     for (auto* list : {&effects.mean, &effects.ci_low, &effects.ci_high}) fill(*list, {2, 2, kEffectBins});
   }
 
-  /// Of both responses: the first is kept, the second is not, at the last pose.
+  /// Verdicts on the limits of both responses: the first is kept, the second is exceeded at the last pose.
   static LimitVerdicts verdicts() {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     return {.judge = Judge::share,
@@ -261,7 +262,8 @@ class Example {
       &CouplingResult::effect_max,          &CouplingResult::interaction_max, &CouplingResult::worst_case_max,
       &CouplingResult::root_sum_square_max, &CouplingResult::opposed_share,   &CouplingResult::cancellation_max};
 
-  /// Two sizes, two sources; sets the study to match. Numbers count on through the arrays.
+  /// A coupling result with two sizes and two sources. Sets the study to match. The numbers count up through all
+  /// arrays.
   CouplingResult coupling() {
     Analysis& analysis = study.analysis;
     analysis.kind = &kCouplingStudy;
@@ -315,7 +317,7 @@ class Example {
     return result;
   }
 
-  /// Two responses to two errors, each solved at two fidelities.
+  /// A comparison of two fidelities for two responses and two errors.
   static FidelityResult fidelity(std::vector<std::string> fidelities) {
     FidelityResult fidelity;
     fidelity.fidelities = std::move(fidelities);
@@ -329,7 +331,7 @@ class Example {
     return fidelity;
   }
 
-  /// Two errors in two groups; sets the study to match.
+  /// An identification of two errors at two groups of sizes. Sets the study to match.
   IdentificationResult identification() {
     study.analysis.kind = &kIdentificationStudy;
     asked_of<IdentificationOptions>(study.analysis).groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
@@ -352,7 +354,7 @@ class Example {
     return result;
   }
 
-  /// Two cases, all details kept; sets the study to match.
+  /// An evaluation of two cases with all details. Sets the study to match.
   Evaluation cases() {
     study.analysis.kind = &kEvaluateStudy;
     std::vector<ErrorCase>& cases = asked_of<CaseOptions>(study.analysis).cases;
@@ -365,7 +367,7 @@ class Example {
                              study.model());
   }
 
-  /// Numbers count on through the arrays.
+  /// Solves with made-up numbers that count up through each array.
   EvaluationResult solves(std::size_t samples) const {
     EvaluationResult result;
     result.response = decltype(result.response)({2, kPoses, samples});
@@ -394,7 +396,7 @@ class Example {
   void write_sensitivity(const std::string& path) const {
     poesy::write_result(path, study, poses, sensitivity(), facts);
   }
-  /// Two errors, each a group of its own, with their interaction, and two vectors.
+  /// A Sobol' result of two errors, each a group of its own, with their interaction and two vectors.
   SobolResult sobol() {
     study.analysis.kind = &kSobolStudy;
     asked_of<SobolOptions>(study.analysis).second_order = true;
@@ -432,7 +434,7 @@ class Example {
     result.failed_samples = 1;
     return result;
   }
-  /// Three parts under one limit, that of the second response, in two stages; certified.
+  /// A certified allocation of three parts with two stages. Only the second response has a limit.
   AllocationResult allocation() {
     study.analysis.kind = &kAllocationStudy;
     study.analysis.asked = AllocationOptions();
@@ -451,7 +453,7 @@ class Example {
     result.cost = {{3}, {2.5, 7.0, 0.5}};
     result.share = {{3}, {0.25, 0.7, 0.05}};
     result.mean_square_share = {{3}, {0.5, 0.375, 0.125}};
-    result.error_mean_square_share = {{2}, {0.375, 0.45}};  // of the hinge, and of two bars
+    result.error_mean_square_share = {{2}, {0.375, 0.45}};  // the error of the hinge, and that of the bars
     result.bound = {{3}, {0, 2, 3}};
     result.chosen = {{3}, Names{"", "grinding", "IT7"}};
     result.coarser_yield = {{3}, {0.9965, 0.9971, kNone}};
@@ -530,7 +532,7 @@ class Example {
   RunFacts facts;
 
  private:
-  /// [2 x 2 x length] values that name their place.
+  /// [2 x 2 x length] values that tell their index (see the class).
   static std::vector<double> numbered(std::size_t array, std::size_t length) {
     std::vector<double> values;
     for (std::size_t r = 0; r < 2; ++r) {

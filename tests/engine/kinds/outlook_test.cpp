@@ -12,7 +12,7 @@
 namespace poesy::test {
 namespace {
 
-/// Does the first piece of each work; the shares that these were.
+/// Does the first piece of each kind of work. Returns the share of the whole work that each piece was.
 std::vector<double> first_pieces(const std::vector<WorkOutlook>& all) {
   std::vector<double> shares;
   for (const WorkOutlook& work : all) {
@@ -27,7 +27,7 @@ TEST(Outlook, CountsTheSolvesOfASensitivityStudy) {
   const Outlook expected = outlook(prepared.study, *prepared.model, prepared.plan.poses());
   EXPECT_EQ(expected.solves, "2 errors x 3 poses x 400 samples = 2400 solves, fewer where series replace them");
   EXPECT_EQ(expected.least, 1.0);
-  // A piece is 200 samples; the solves at a tenth of the size come to the study's own.
+  // A piece is 200 samples. `times` exceeds 1, because the study also solves samples at a tenth of the size.
   EXPECT_EQ(first_pieces(expected.shared), std::vector{200.0 / 2400.0});
   EXPECT_GT(expected.shared.front().times, 1.0);
   EXPECT_TRUE(expected.by_one.empty());
@@ -44,7 +44,7 @@ TEST(Outlook, NamesBothEndsOfAdaptiveSamples) {
   EXPECT_EQ(first_pieces(expected.shared), std::vector{200.0 / 12000.0});
 }
 
-/// Merging is tried as well: all of a study this small, whole units of one with more samples.
+/// Merging is tried too: all samples of a small study, or whole units of a larger one.
 TEST(Outlook, TriesTheMergingOfAStudyThatDrawsPerPose) {
   for (const auto& [samples, tried] : {std::pair<std::size_t, std::size_t>{20, 20}, {2500, 2000}, {40'000, 8000}}) {
     const Prepared prepared(study_of(&kMonteCarloStudy, samples));
@@ -56,7 +56,8 @@ TEST(Outlook, TriesTheMergingOfAStudyThatDrawsPerPose) {
   }
 }
 
-/// A piece is a unit of machines at all poses. What is read off at the end is tried at one pose, and as a whole.
+/// A piece is a unit of machines at all poses. The evaluation at the end of the study is tried at one of three poses
+/// and, for the parts over all poses, as a whole.
 TEST(Outlook, TriesUnitsOfMachines) {
   for (const auto& [machines, tried] : {std::pair<std::size_t, std::size_t>{30, 30}, {4000, 1000}}) {
     Study study = study_of(&kMonteCarloStudy, machines);
@@ -73,7 +74,7 @@ TEST(Outlook, TriesUnitsOfMachines) {
   }
 }
 
-/// One thread at a time merges, so that many threads are no faster than that.
+/// Only one thread at a time merges, so the merging limits how fast many threads can be.
 TEST(Outlook, AddsUpSeconds) {
   const WorkSeconds seconds{.shared = 12.0, .merging = 2.0, .by_one = 0.5};
   EXPECT_EQ(seconds.on(1), 14.5);

@@ -27,7 +27,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Every match of the pattern's first group.
+/// The first group of every match of `pattern` in `text`.
 std::vector<std::string> all(const std::string& text, const std::string& pattern) {
   const std::regex expression(pattern);
   std::vector<std::string> found;
@@ -37,7 +37,7 @@ std::vector<std::string> all(const std::string& text, const std::string& pattern
   return found;
 }
 
-/// The part between the style and the scripts, which are of the program itself.
+/// The body of the page without its scripts.
 std::string body(const std::string& html) {
   const std::size_t begin = html.find("<body>");
   return html.substr(begin, html.find("<script type=\"application/json\"") - begin);
@@ -129,7 +129,8 @@ void check_scatter(const Json& report, const Json& figure) {
   }
 }
 
-/// That all parts of the page fit together, whatever it tells.
+/// Checks that the page is consistent: unique sections that the navigation links to, a figure in the data for each
+/// figure element, and closed tags.
 void check_page(const std::string& html) {
   const std::string page = body(html);
   const std::vector<std::string> ids = all(page, "<section id=\"([^\"]*)\"");
@@ -157,7 +158,7 @@ void check_page(const std::string& html) {
   }
 }
 
-/// That a number went into a figure: to 32 bits, or as one that is not known.
+/// Expects that a figure shows `value`, rounded to a 32-bit float. NaN stays NaN.
 void expect_shown(float shown, double value) {
   EXPECT_EQ(std::isnan(shown), std::isnan(value));
   if (!std::isnan(value)) {
@@ -165,7 +166,8 @@ void expect_shown(float shown, double value) {
   }
 }
 
-/// That the bars of a figure show these series, [R x P] each, in the order of its responses. member: of its quantity.
+/// Expects that the bars of a figure show these series ([responses x errors] each), in the figure's order of the
+/// responses. member: name of the array in the figure's first quantity.
 void expect_bars(const Json& page, const Json& figure, const char* member, const StoredResult& result,
                  const std::vector<std::span<const double>>& series) {
   const std::vector<float> shown = array(page, figure["quantities"][0][member]);
@@ -297,7 +299,8 @@ TEST_F(HtmlReport, ShowsTheNumbersOfTheResult) {
   }
 }
 
-/// The inner bins of the example: of the first response 1 to 2 alone, for the next one reaches the largest value.
+/// The histogram of the example's first response has one inner bin, from 1 to 2, because the next bin reaches the
+/// largest value.
 TEST_F(HtmlReport, DrawsTheHistogramOfAMonteCarloResultWithItsLimit) {
   example.write_monte_carlo(path);
   const ReportedResult result = stored();
@@ -310,7 +313,7 @@ TEST_F(HtmlReport, DrawsTheHistogramOfAMonteCarloResultWithItsLimit) {
             (std::vector<float>{static_cast<float>(1.0 / unit), static_cast<float>(2.0 / unit)}));
   const std::vector<float> density = array(page, figure["panels"][0]["series"][0]["value"]);
   const std::vector<float> below = array(page, figure["panels"][1]["series"][0]["value"]);
-  // The bar is 57.3 deg wide.
+  // The bin is 1 rad = 57.3 deg wide, but the label counts per 50 deg.
   EXPECT_EQ(figure["panels"][0]["label"], "share of the samples per 50 deg");
   EXPECT_EQ(figure["panels"][0]["unit"], "%");
   expect_shown(density.at(0), 100.0 * 200.0 / 382.0 * unit * 50.0);
@@ -358,7 +361,7 @@ TEST_F(HtmlReport, DrawsShapleyEffectsWithTheirIntervals) {
   EXPECT_NE(html.find("Shapley effect of each error"), std::string::npos);
 }
 
-/// Every response to every error is like this at the poses.
+/// Gives every response to every error the same values at the poses.
 void fill_poses(SensitivityResult::Cells<double>& cells, const std::vector<double>& at_poses) {
   for (const std::size_t r : {0U, 1U}) {
     for (const std::size_t p : {0U, 1U}) std::ranges::copy(at_poses, cells.row(r, p).begin());
@@ -399,7 +402,7 @@ TEST_F(HtmlReport, PutsPosesInTheOrderThatExplainsTheEffects) {
   EXPECT_FALSE(data(report(result))["figures"]["heat"]["columns"].contains("order"));
 }
 
-/// Of so many solves in each of 8 cells, one does not converge.
+/// Each of the 8 cells (errors x poses) has this number of solves, and one solve in all does not converge.
 ReportedResult with_one_failure(ReportedResult result, std::uint64_t solves) {
   for (SolveCounts& cell : sensitivity_in(result.stored).solves) cell.by_status = {solves, 0, 0, 0, 0};
   sensitivity_in(result.stored).solves(1, 1).by_status = {solves - 1, 0, 1, 0, 0};
@@ -449,7 +452,7 @@ TEST_F(HtmlReport, SaysWhatItsNamesMean) {
   EXPECT_EQ(data(html)["about"]["epsilon_1"], "tilt of the bolt");
 }
 
-// The first error has the larger index, the second the larger mean square, which is what a limit limits.
+// The first error has the larger index, but the second has the larger mean square, which decides about limits.
 TEST_F(HtmlReport, SaysWhichErrorsMakeTheMeanSquare) {
   ReportedResult result = sensitivity();
   StoredResult& stored = result.stored;
@@ -558,7 +561,7 @@ TEST_F(HtmlReport, EscapesWhateverComesFromTheFile) {
   EXPECT_EQ(body(html).find("<!--"), std::string::npos);
   EXPECT_EQ(html.find('\xFF'), std::string::npos);
   const std::string json = data(html).dump(-1, ' ', false, Json::error_handler_t::replace);
-  EXPECT_NE(json.find("<script>alert(1)</script><!--"), std::string::npos);  // as it was, to whom reads the JSON
+  EXPECT_NE(json.find("<script>alert(1)</script><!--"), std::string::npos);  // the JSON value is unchanged
   EXPECT_NE(html.find("&lt;script&gt;alert(1)&lt;/script&gt;&lt;!-- &quot; &#39; &amp; \xEF\xBF\xBD"),
             std::string::npos);
 }
@@ -643,7 +646,7 @@ TEST_F(HtmlReport, OfTwoResultsShowsWhatDiffers) {
   for (const Json& layer : page["figures"]["heat"]["layers"]) EXPECT_TRUE(layer["signed"]);
 }
 
-/// The text of a table's element.
+/// The HTML of the table with this name. Empty if there is none.
 std::string table(const std::string& html, const std::string& name) {
   const std::size_t begin = html.find("data-table=\"" + name + "\"");
   return begin == std::string::npos ? "" : html.substr(begin, html.find("</table>", begin) - begin);
@@ -688,7 +691,7 @@ TEST_F(HtmlReport, OfTwoResultsHasTheTotals) {
   std::ranges::fill(sensitivity_in(b.stored).mean, 0.5e-3);
   std::ranges::fill(sensitivity_in(b.stored).std, 0.0);
   const std::string rows = table(report(a, b), "totals");
-  // Two errors: sqrt(2 (3^2 + 4^2 999 / 1000)) = 7.069 mm, and sqrt(2) 0.5 mm.
+  // The root mean squares of two errors: sqrt(2 (3^2 + 4^2 999 / 1000)) = 7.069 mm in A, and sqrt(2) 0.5 mm in B.
   EXPECT_NE(rows.find("<th scope=\"row\">linear_deformation</th><td class=\"n\" style=\"--room:1\">7.069</td>"),
             std::string::npos)
       << rows;

@@ -9,10 +9,10 @@
 #include "engine/kinds/registry.h"
 #include "engine/kinds/sensitivity/result.h"
 
-/// What a kind found, of results that tests make or change.
+/// Access to the findings (the result of a kind of study) in a StoredResult that a test makes or changes.
 namespace poesy {
 
-/// Made where the result has nothing yet.
+/// The findings of the result. Creates empty findings if the result has none.
 template <class Found>
 Found& found_in(StoredResult& result) {
   if (!result.found.has_value()) result.found.emplace<Found>();
@@ -23,8 +23,8 @@ inline SensitivityResult& sensitivity_in(StoredResult& result) { return found_in
 inline MonteCarloResult& monte_carlo_in(StoredResult& result) { return found_in<MonteCarloResult>(result); }
 inline CouplingResult& coupling_in(StoredResult& result) { return found_in<CouplingResult>(result); }
 
-/// Gives a sensitivity result these global indices, row-major by response and error, which hold at a tenth of the
-/// sizes, with intervals of no width. Precondition: it has its errors and responses.
+/// Sets the global indices [responses x errors] of a sensitivity result, with intervals of zero width and no change at
+/// a tenth of the sizes. Precondition: the result has its errors and responses.
 inline void set_indices(StoredResult& result, const std::vector<double>& indices) {
   SensitivityResult& found = sensitivity_in(result);
   const std::array lengths{result.responses.size(), result.factors.size()};
@@ -36,13 +36,13 @@ inline void set_indices(StoredResult& result, const std::vector<double>& indices
   found.index_change = SensitivityResult::Indices(lengths);
 }
 
-/// The tables that the result's kind has, its errors ranked by this response.
+/// The tables of a result. ranked_by: the response that ranks the errors.
 inline std::vector<Table> result_tables(const StoredResult& result, const std::string& ranked_by,
                                         RowOrder order = RowOrder::effect) {
   return result_tables(kind_of(result).report, result, {ranked_by, order});
 }
 
-/// How its solves ended.
+/// Counts of how the solves of a result ended.
 inline SolveTally tally_of(const StoredResult& result) { return kind_of(result).report.tally(result); }
 
 }  // namespace poesy

@@ -37,7 +37,7 @@ inline Study study_of(KindOfStudy kind, std::size_t samples) {
   return study;
 }
 
-/// All numbers of a result, bit by bit.
+/// The bits of all numbers of a result, for exact comparisons.
 using Bits = std::vector<std::uint64_t>;
 
 inline void append(Bits& bits, std::span<const double> values) {
@@ -106,7 +106,7 @@ inline Bits bits_of(const IdentificationResult& result) {
   return bits;
 }
 
-/// One run of a study of some kind; its result's bits, or nothing when it was stopped.
+/// Runs the study. Returns the bits of its result, or none if the run was stopped.
 inline std::optional<Bits> run(const Prepared& prepared, const RunOptions& options) {
   const auto table = [&](const ErrorTable& errors) {
     return run_evaluation(*prepared.model, {}, prepared.plan.poses(), errors, Pairing::every_pose_with_every_row,

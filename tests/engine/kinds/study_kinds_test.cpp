@@ -116,7 +116,7 @@ TEST(StudyOfMonteCarlo, TakesQuantilesAndVariesAll) {
 }
 
 TEST(StudyOfMonteCarlo, SolvesSamplesAtEachPoseWhateverItsQuantiles) {
-  // Three poses; 10^15 solves are allowed.
+  // At most 10^15 solves are allowed; the study has three poses.
   EXPECT_EQ(study_of("kind = \"monte-carlo\"\nsamples = 333333333333333\n").analysis.samples, 333333333333333u);
   const test::TempFolder folder;
   const std::string path =
@@ -167,7 +167,7 @@ TEST(ResolvedTextOfAnyKind, ReadsBack) {
 
 struct BadAnalysis {
   const char* name;
-  std::string analysis;  ///< the place of the mistake marked with ^
+  std::string analysis;  ///< text of [analysis]; a ^ marks the place of the mistake
   std::vector<std::string> words;
 };
 

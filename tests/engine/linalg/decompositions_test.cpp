@@ -11,7 +11,7 @@ namespace {
 constexpr double kTolerance = 1e-13;
 constexpr double kThreshold = 1e-9;
 
-/// Entries between -1 and 1 that follow no pattern; its rank is min(rows, cols).
+/// A matrix of full rank with irregular entries between -1 and 1.
 Matrix irregular(Eigen::Index rows, Eigen::Index cols) {
   Matrix A(rows, cols);
   for (Eigen::Index i = 0; i < rows; ++i) {
@@ -67,7 +67,7 @@ TEST(LeastSquares, IsTheShortestSolution) {
   const Vector x = least_squares(A, b, kThreshold);
   expect_near(A.transpose() * (A * x - b), Vector::Zero(6));
   expect_near(pseudo_inverse(A) * b, x);
-  // The shortest has nothing in the directions that A maps to zero.
+  // The shortest solution has no component in the null space of A.
   expect_near(right_singular_vectors(A).V.rightCols(2).transpose() * x, Vector::Zero(2));
 }
 
@@ -137,14 +137,14 @@ TEST(LuFactors6, SolveInvertAndHaveTheDeterminant) {
   expect_near(A * factors.solve(b), b);
   expect_near(A * factors.inverse(), Matrix::Identity(6, 6));
   EXPECT_NEAR(std::abs(factors.determinant()), singular_values(A).prod(), kTolerance);
-  // A row that is exchanged with another changes the sign, and nothing else.
+  // Exchanging two rows changes only the sign of the determinant.
   LuFactors6::Matrix6 exchanged = A;
   exchanged.row(1).swap(exchanged.row(4));
   EXPECT_NEAR(LuFactors6(exchanged).determinant(), -factors.determinant(), kTolerance);
 }
 
 TEST(LuFactors6, SayWhereEachRowIs) {
-  // P A = U: each row of this A is that of a unit matrix.
+  // Each row of A has a single non-zero entry, so U = P A is diagonal.
   const LuFactors6::Places rows{2, 0, 1, 5, 3, 4};
   LuFactors6::Matrix6 A = LuFactors6::Matrix6::Zero();
   for (Eigen::Index row = 0; row < 6; ++row) A(row, rows[row]) = 1.0 + static_cast<double>(row);

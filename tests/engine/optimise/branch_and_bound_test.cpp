@@ -18,7 +18,7 @@ using testing::SplitMix;
 
 enum class Choice { processes, values, both };
 
-/// Parts with several processes, of ranges that overlap and costs that cross.
+/// Random parts, each with `ways` processes or single values, whose ranges overlap and whose cost curves cross.
 AllocationProblem random_choice(std::uint64_t seed, std::size_t parts, std::size_t limits, std::size_t ways,
                                 Choice choice) {
   SplitMix draw(seed + 77);
@@ -50,7 +50,8 @@ AllocationProblem random_choice(std::uint64_t seed, std::size_t parts, std::size
   return problem;
 }
 
-/// The costs of all choices that keep the limits, ascending: each by a programme of its own.
+/// The least costs of all choices of processes that can keep the limits, ascending. Each choice is optimised
+/// separately.
 std::vector<double> costs_of_all(const AllocationProblem& problem) {
   std::vector<double> costs;
   std::vector<std::size_t> choice(problem.parts.size(), 0);
@@ -120,16 +121,17 @@ TEST(SearchAmongProcesses, ThatEndsEarlySaysHowFarItMayBeOff) {
 TEST(SearchAmongProcesses, KnowsWhatMixedProcessesWouldPayForRoom) {
   AllocationProblem problem = random_choice(3, 30, 1, 10, Choice::values);
   const LeastCost found = std::get<LeastCost>(least_cost(problem));
-  EXPECT_EQ(found.multiplier, std::vector{0.0});  // single values do not move with a little more room
+  EXPECT_EQ(found.multiplier, std::vector{0.0});  // a little more room does not change a choice among single values
   EXPECT_GT(found.relaxed[0], 0.0);
   const double more = 0.5;
   problem.limits.room[0] += more;
   const double saved = found.best.cost - std::get<LeastCost>(least_cost(problem)).best.cost;
-  EXPECT_LT(saved, 1.05 * more * found.relaxed[0]);  // the cost of mixes is convex, and that of choices near it
+  EXPECT_LT(saved, 1.05 * more * found.relaxed[0]);  // the relaxed cost is convex; choices cost about as much
   EXPECT_GT(saved, 0.2 * more * found.relaxed[0]);
 }
 
-// IT5 to IT12 of ISO 286-1 at 12 mm, 100 mm and 400 mm, by enumeration of 8^3 choices.
+// Grades IT5 to IT12 of ISO 286-1 (micrometres) at 12 mm, 100 mm and 400 mm. The best of the 8^3 choices is found by
+// enumeration.
 TEST(SearchAmongProcesses, TakesGradesOfAStandard) {
   const std::vector<std::pair<double, std::vector<double>>> widths{{0.012, {8, 11, 18, 27, 43, 70, 110, 180}},
                                                                    {0.1, {15, 22, 35, 54, 87, 140, 220, 350}},

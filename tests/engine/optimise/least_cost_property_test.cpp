@@ -23,7 +23,7 @@ long double plain_size(long double tolerance, Stacking stacking) {
   return stacking == Stacking::root_sum_square ? tolerance * tolerance : tolerance;
 }
 
-/// The least of cost + price x size over [lo, hi], which is convex in T, by ternary search.
+/// The minimum over T in [lo, hi] of cost + price x size, which is convex in T, by ternary search.
 long double least_total(const PlainLaw& law, long double price, long double lo, long double hi, Stacking stacking) {
   const auto total = [&](long double t) { return law.at(t) + price * plain_size(t, stacking); };
   for (int step = 0; step < 160; ++step) {
@@ -34,14 +34,14 @@ long double least_total(const PlainLaw& law, long double price, long double lo, 
   return total((lo + hi) / 2);
 }
 
-/// Lagrange's bound from the multipliers, of none of whose numbers the engine's sources know.
+/// The Lagrangian lower bound of the cost for these multipliers, computed independently of the engine.
 long double dual_value(const RandomProgramme& random, const std::vector<double>& multiplier) {
   const ToleranceLimits& limits = random.problem.limits;
   long double bound = 0;
   for (std::size_t i = 0; i < limits.parts; ++i) {
     const Process& process = random.problem.parts[i][0];
     long double price = 0;
-    long double hi = process.hi;  // what one limit alone allows is a bound too
+    long double hi = process.hi;  // the limits alone bound the tolerance too
     for (std::size_t l = 0; l < limits.count(); ++l) {
       const long double effect = limits.row(l)[i];
       price += multiplier[l] * effect;
@@ -99,7 +99,7 @@ TEST(RandomProgrammes, KeepTheirBoundsAndLimits) {
   }
 }
 
-/// Costs by scipy's SLSQP: reference_costs.py.
+/// Reference costs by SLSQP of scipy, computed with reference_costs.py.
 TEST(RandomProgrammes, CostNoMoreThanAnotherSolverFinds) {
   std::ifstream file(POESY_TEST_DATA "/allocation_costs.csv");
   std::string line;
@@ -110,13 +110,13 @@ TEST(RandomProgrammes, CostNoMoreThanAnotherSolverFinds) {
     const std::uint64_t number = std::stoull(line);
     const double reference = std::stod(line.substr(line.find(',') + 1));
     const LeastCost found = std::get<LeastCost>(least_cost(random_programme(number).problem));
-    EXPECT_LE(found.best.cost, reference * (1.0 + 1e-10)) << number;  // of its 12 digits
+    EXPECT_LE(found.best.cost, reference * (1.0 + 1e-10)) << number;  // the file has 12 digits
     EXPECT_LE(found.lower_bound, reference * (1.0 + 1e-11)) << number;
     ++compared;
     if (reference <= found.best.cost * (1.0 + 1e-7)) ++found_too;
   }
   EXPECT_EQ(compared, kProgrammes);
-  EXPECT_GE(found_too, kProgrammes * 95 / 100);  // the reference is worth comparing with
+  EXPECT_GE(found_too, kProgrammes * 95 / 100);  // the reference solver found nearly all optima
 }
 
 TEST(RandomProgrammes, CostLessWithMoreRoom) {
@@ -133,7 +133,8 @@ TEST(RandomProgrammes, CostLessWithMoreRoom) {
   }
 }
 
-/// A problem whose lower bounds leave little of its limits, from a tenth down to a billionth.
+/// Problems in which the lower bounds of the tolerances use nearly the whole limit: the rest is from a tenth down to a
+/// billionth.
 TEST(RandomProgrammes, ThatHardlyHaveRoomAreSolved) {
   for (std::uint64_t number = 0; number < 500; ++number) {
     AllocationProblem problem = random_programme(number).problem;

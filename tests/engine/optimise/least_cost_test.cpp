@@ -34,7 +34,7 @@ TEST(OverrunningClutch, HasTheOptimumOfItsPublishedProcesses) {
   std::vector<CostLaw> laws;
   for (std::size_t i = 0; i < 4; ++i) laws.push_back(clutch_processes()[i][published[i]].cost);
   const LeastCost found = solved(unbounded(clutch_limits(Stacking::root_sum_square), laws));
-  EXPECT_NEAR(found.best.cost, 24.42989011, 5e-8);  // gradient of 8 digits
+  EXPECT_NEAR(found.best.cost, 24.42989011, 5e-8);  // the reference's gradient has 8 digits
   const double expected[]{.17859228, .17069998, .13191761, .18931314};
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(found.best.tolerance[i], expected[i], 2e-8);
   EXPECT_LE(found.gap(), 1e-11 * found.best.cost);
@@ -76,7 +76,7 @@ TEST(OverrunningClutch, HasOtherProcessesInTheWorstCase) {
 }
 
 TEST(LeastCost, OfReciprocalCostsIsTheClosedForm) {
-  // min sum b / T with sum g^2 T^2 = L^2: T is proportional to (b / g^2)^(1/3).
+  // The minimum of sum b / T subject to sum g^2 T^2 = L^2 has T proportional to (b / g^2)^(1/3).
   const std::vector<double> b{0.3, 2.0, 0.04, 7.0, 1.1};
   const std::vector<double> g{0.1, 0.7, 3.0, 0.02, 1.0};
   ToleranceLimits limits{Stacking::root_sum_square, b.size(), {}, {0.05 * 0.05}};
@@ -219,7 +219,7 @@ TEST(LeastCost, IsAtTheLowerBoundsWhereTheseFillALimit) {
   EXPECT_EQ(found.best.tolerance, std::vector(3, 0.25));
   EXPECT_EQ(found.use.share, 1.0);
   EXPECT_NEAR(found.gap(), 0.0, 1e-12);
-  EXPECT_DOUBLE_EQ(found.multiplier[0], 16.0);  // 1 / T^2: more room would go to either of the two
+  EXPECT_DOUBLE_EQ(found.multiplier[0], 16.0);  // 1 / T^2: either part would use more room
 }
 
 TEST(LeastCost, LeavesSomethingToEachPart) {

@@ -42,7 +42,7 @@ TEST(MaxTolerances, OfEqualEffectCountTheLimitThatAPartUsesMost) {
 TEST(MaxTolerances, OfEqualSizeAreTheClosedForm) {
   const MaxTolerances found = largest(kSquares, {1, 1, 1}, {{0, kInfinity}, {0, kInfinity}, {0, 7}});
   EXPECT_NEAR(found.factor, std::sqrt(1.0 / 5.0), 1e-14);
-  EXPECT_EQ(found.limit, 0u);  // and 1 as well
+  EXPECT_EQ(found.limit, 0u);  // limit 1 is reached as well
   EXPECT_EQ(found.tolerance[0], found.factor);
   EXPECT_EQ(found.tolerance[1], found.factor);
   ToleranceLimits magnitudes = kSquares;
@@ -53,7 +53,8 @@ TEST(MaxTolerances, OfEqualSizeAreTheClosedForm) {
 }
 
 TEST(MaxTolerances, ShareWhatBoundsLeave) {
-  // Part 1 ends at 0.3 and part 0 begins at 0.4: 4 T^2 + 0.09 = 1 and T^2 + 0.81 = 2.
+  // Part 1 stays at its upper bound 0.3, so the first limit gives part 0 the tolerance T with 4 T^2 + 0.3^2 = 1. The
+  // second limit allows more.
   const MaxTolerances found = largest(kSquares, {1, 1, 1}, {{0.4, kInfinity}, {0, 0.3}, {0, 1}});
   EXPECT_NEAR(found.tolerance[0], std::sqrt(0.91 / 4.0), 1e-13);
   EXPECT_EQ(found.tolerance[1], 0.3);

@@ -9,7 +9,7 @@
 /// (X4 - (X2 + X3) / 2)), mm and rad.
 namespace poesy::testing {
 
-/// |y| off by at most 0.035 rad, as root sum square of the tolerances or in the worst case.
+/// The limit 0.035 rad on the deviation of y, for root-sum-square or worst-case stacking of the tolerances (mm).
 inline ToleranceLimits clutch_limits(Stacking stacking) {
   const double hub = 55.29;
   const double roller = 22.86;
@@ -24,7 +24,7 @@ inline ToleranceLimits clutch_limits(Stacking stacking) {
   return limits;
 }
 
-/// The processes of the four parts.
+/// The manufacturing processes of the four parts: cost a + b / T and the range of T (mm).
 inline std::vector<std::vector<Process>> clutch_processes() {
   const auto process = [](double fixed, double b, double lo, double hi) {
     return Process{CostLaw::reciprocal(fixed, b), lo, hi};

@@ -11,7 +11,7 @@
 #include "engine/optimise/least_cost.h"
 #include "tests/engine/optimise/random_programme.h"
 
-/// Pairs of parts: an orientation zone within a location zone, which may be left out.
+/// Pairs of parts: an orientation zone (inner) within a location zone (outer). The orientation zone may be left out.
 namespace poesy {
 namespace {
 
@@ -24,8 +24,8 @@ LeastCost solved(const AllocationProblem& problem, const SearchOptions& options 
   return std::get<LeastCost>(least_cost(problem, options));
 }
 
-/// The zones of the tutorial's Delta: mean square of the tool's position, mm^2 per T^2, at three poses (`allocation` of
-/// drawing.json). The limit is 0.02 mm.
+/// For each zone of the tutorial's Delta, its mean square of the tool position divided by T^2 (both mm^2) at three
+/// poses, from `allocation` in drawing.json. The limit is 0.02 mm.
 constexpr std::array<std::array<double, 3>, 11> kDelta{{
     {5.593453503657986, 6.098184473741125, 7.30145588076525},             // face.parallelism
     {0.03967078189300408, 0.05385386075335197, 0.04415853858834494},      // rail.position
@@ -42,7 +42,8 @@ constexpr std::array<std::array<double, 3>, 11> kDelta{{
 constexpr std::size_t kRailTilt = 2;
 constexpr std::size_t kHingeTilt = 5;
 
-/// Costs b / T, of which those of distances have b = 0.5.
+/// The allocation of these zones with costs b / T: b is 0.5 for the distances zero and rod, hinge_b for
+/// hinge_b.parallelism and 1 for other zones.
 AllocationProblem delta(double hinge_b) {
   AllocationProblem problem{{Stacking::root_sum_square, kDelta.size(), {}, {}}, {}, {}};
   for (std::size_t l = 0; l < 3; ++l) {
@@ -105,10 +106,10 @@ TEST(ZonesOfTheDelta, KeepAnOrientationThatPays) {
   EXPECT_EQ(found.next[0].left_out, (std::vector{kRailTilt, kHingeTilt}));
 }
 
-/// Random pairs, and a part in no pair.
+/// A random problem with pairs and one part that is in no pair.
 struct RandomPairs {
   AllocationProblem problem;
-  std::vector<std::vector<PlainLaw>> laws;  ///< [N] of each process
+  std::vector<std::vector<PlainLaw>> laws;  ///< [parts][processes]
 };
 
 RandomPairs random_pairs(std::uint64_t number, std::size_t pairs, std::size_t ways, LeftOut left_out) {
@@ -141,7 +142,7 @@ RandomPairs random_pairs(std::uint64_t number, std::size_t pairs, std::size_t wa
     double room = 0.0;
     for (std::size_t i = 0; i < limits.parts; ++i) {
       double effect = (0.1 + draw.uniform()) * draw.uniform() / (scale[i] * scale[i]);
-      if (i % 2 == 1) {  // a tilt, less what it takes from the middle
+      if (i % 2 == 1) {  // a tilt: its own effect, minus what it takes from the middle
         const double middle = limits.effects.back();
         effect = (draw.below(2) == 0 ? effect : 0.0) - middle * (draw.below(4) == 0 ? 1.0 : draw.uniform());
       }
@@ -166,7 +167,8 @@ long double least_of(const F& f, long double lo, long double hi) {
   return f((lo + hi) / 2);
 }
 
-/// Lagrange's bound of a problem with one process of each part, in long double and without the engine's closed forms.
+/// The Lagrangian lower bound for a problem with one process for each part, in long double and without the closed forms
+/// of the engine.
 long double dual_value(const RandomPairs& random, const std::vector<double>& multiplier) {
   const ToleranceLimits& limits = random.problem.limits;
   const auto price = [&](std::size_t part) {
@@ -232,7 +234,7 @@ TEST(RandomPairs, AreSolvedWithAProofOfTheirOwn) {
   EXPECT_GT(count, 50u);
 }
 
-/// The problem with these processes, and with these pairs left out.
+/// The problem with only the chosen process of each part. out: for each pair, 1 if its orientation zone is left out.
 AllocationProblem chosen(const AllocationProblem& problem, const std::vector<std::size_t>& process,
                          const std::vector<std::size_t>& out) {
   AllocationProblem one{problem.limits, {}, {}};
@@ -253,7 +255,7 @@ AllocationProblem chosen(const AllocationProblem& problem, const std::vector<std
   return one;
 }
 
-/// Whether the processes of each pair fit in each other.
+/// Whether in each pair the finest orientation zone fits within the coarsest location zone.
 bool fits(const AllocationProblem& one) {
   return std::ranges::all_of(one.pairs, [&](const Within& pair) {
     const double most = one.parts[pair.outer][0].hi;
@@ -261,8 +263,8 @@ bool fits(const AllocationProblem& one) {
   });
 }
 
-/// The costs of all choices that keep the limits, ascending: each by a programme of its own. What is left out becomes a
-/// part without pair.
+/// The least costs of all choices of processes and left-out zones that can keep the limits, ascending. Each choice is
+/// optimised separately.
 std::vector<double> costs_of_all(const AllocationProblem& problem) {
   std::vector<double> costs;
   const std::size_t parts = problem.parts.size();
@@ -277,7 +279,7 @@ std::vector<double> costs_of_all(const AllocationProblem& problem) {
   for (std::size_t i = 0; i < choice.size();) {
     const std::vector<std::size_t> process(choice.begin(), choice.begin() + static_cast<std::ptrdiff_t>(parts));
     const std::vector<std::size_t> out(choice.begin() + static_cast<std::ptrdiff_t>(parts), choice.end());
-    bool is_new = true;  // a part that is left out has no processes
+    bool is_new = true;  // a part that is left out has no choice of processes
     for (std::size_t p = 0; p < out.size(); ++p)
       is_new = is_new && (out[p] == 0 || process[problem.pairs[p].inner] == 0);
     const AllocationProblem one = chosen(problem, process, out);
@@ -372,7 +374,7 @@ TEST(PairOfParts, WithoutEffectNeedsAnEnd) {
 }
 
 TEST(PairOfParts, ThatBreaksALimitAtItsLowestIsInfeasible) {
-  // The least need is that of a tilt as coarse as the location allows: 4 (1 - 0.5 x 0.5) = 3.
+  // The limit needs least room if the tilt is as coarse as the location allows: 4 (1 - 0.5 x 0.5) = 3.
   AllocationProblem problem{{Stacking::root_sum_square, 2, {1.0, -0.5}, {2.9}}, {}, {{1, 0, 0.5, LeftOut::never}}};
   problem.parts = {{{CostLaw::reciprocal(0.0, 1.0), 2.0, 9.0}}, {{CostLaw::reciprocal(0.0, 1.0), 0.1, 9.0}}};
   const auto broken = std::get<Infeasible>(least_cost(problem));

@@ -8,10 +8,10 @@
 
 #include "engine/optimise/least_cost.h"
 
-/// Random convex programmes, the same ones as reference_costs.py makes.
+/// Random convex allocation problems. reference_costs.py generates the same ones.
 namespace poesy::testing {
 
-/// Steele, Lea and Flood's SplitMix64.
+/// The random generator SplitMix64 of Steele, Lea and Flood.
 class SplitMix {
  public:
   explicit SplitMix(std::uint64_t state) : state_(state) {}
@@ -31,7 +31,7 @@ class SplitMix {
   std::uint64_t state_;
 };
 
-/// Cost laws by what they are made of, so that a test can compute them itself.
+/// A cost law with its parameters, so that a test can compute the cost itself.
 struct PlainLaw {
   int form;  ///< 0: fixed + b / T^shape; 1: fixed + b exp(-T / shape)
   double fixed;
@@ -42,7 +42,7 @@ struct PlainLaw {
     if (form == 1) return CostLaw::exponential(fixed, b, shape);
     return shape == 1.0 ? CostLaw::reciprocal(fixed, b) : CostLaw::reciprocal_power(fixed, b, shape);
   }
-  /// In more digits than the engine has.
+  /// The cost in long double, with more digits than the engine has.
   long double at(long double tolerance) const {
     const long double part =
         form == 1 ? std::exp(-tolerance / shape) : std::pow(tolerance, -static_cast<long double>(shape));
@@ -52,7 +52,7 @@ struct PlainLaw {
 
 struct RandomProgramme {
   AllocationProblem problem;
-  std::vector<PlainLaw> laws;  ///< [N]
+  std::vector<PlainLaw> laws;  ///< [parts]
 };
 
 inline PlainLaw random_law(SplitMix& draw, double t0) {
@@ -65,8 +65,8 @@ inline PlainLaw random_law(SplitMix& draw, double t0) {
   return {1, fixed, 2.0 * height, t0 * (0.3 + 2.0 * bend)};
 }
 
-/// Programme `number`: 2 to 12 parts, 1 to 10 limits, some of them twice, all laws, fixed parts, parts without bound or
-/// without effect.
+/// The random problem with this number. It has 2 to 12 parts and 1 to 10 limits, with all cost laws. Some limits are
+/// repeated, some parts are fixed, and some have no upper bound or no effect.
 inline RandomProgramme random_programme(std::uint64_t number) {
   SplitMix draw(number * 1000003);
   RandomProgramme random;

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Costs of the random programmes of random_programme.h by scipy's SLSQP, an independent solver.
+"""Costs of the random optimisation problems of random_programme.h by scipy's SLSQP, an independent solver.
 
-It works with the tolerances themselves, over those of each part's own scale, so limits of squares are quadratic to it. Its
-word is not taken for feasibility: a result is drawn towards the lower bounds until it keeps the limits, and the best of several
-starts counts.
+Its variables are tolerances divided by each part's scale, so limits on mean squares are quadratic. Whether SLSQP's
+result is feasible is checked independently: it is moved towards the lower bounds until all limits hold. The best result
+of several starts counts.
 
-Usage: reference_costs.py write FILE       all 1000, as lines NUMBER,COST
-       reference_costs.py check FILE       every 40th once more; exits 1 if one has become cheaper than FILE says by 1e-7
-                                           or dearer by 1e-4, 77 without scipy
+Usage: reference_costs.py write FILE       solves all 1000; writes lines NUMBER,COST
+       reference_costs.py check FILE       solves every 40th again; exits with 1 if a cost is lower than in FILE by 1e-7
+                                           or higher by 1e-4 (relative), with 77 without scipy
 """
 
 import math
@@ -138,7 +138,7 @@ class Programme:
         best = math.inf
         for share in (0.0, 0.5, 1.0):
             x = self.drawn_within(self.lo + share * (np.minimum(upper, 2.0 * self.t0) - self.lo)) / self.t0
-            for _ in range(3):  # from where it ended, once more
+            for _ in range(3):  # restarts at the last solution
                 found = minimize(
                     lambda x: self.cost(x * self.t0),
                     x,

@@ -14,8 +14,8 @@
 #include "engine/random/stream.h"
 #include "engine/stats/moments.h"
 
-// Fixed seeds. Each check fails for a design that is what it should be with probability alpha = 0.001, two-sided: too
-// even is as suspicious as too uneven.
+// The seeds are fixed. Each check fails for a correct design with probability alpha = 0.001. The checks are two-sided:
+// counts that are too even fail like counts that are too uneven.
 
 namespace poesy {
 namespace {
@@ -56,7 +56,7 @@ TEST(ScrambledSobol, EveryPointIsUniformOverReplicates) {
 }
 
 TEST(ScrambledSobol, DeepDigitsAreUniformOverReplicates) {
-  // Digits 25 to 32 and 33 to 40 of a point, and the first digits together with them.
+  // The joint distribution of the binary digits 25 to 32 (then 33 to 40) and the first two digits of a coordinate.
   const ScrambledSobol points(3, 12);
   for (const double scale : {0x1p24, 0x1p32}) {
     std::vector<double> counts(1024, 0.0);
@@ -79,9 +79,9 @@ TEST(ScrambledSobol, DimensionsAreIndependentOverReplicates) {
 }
 
 TEST(ScrambledSobol, DigitsBelowNodesThatPartAreIndependent) {
-  // Two points that share no digit (0 and 1), and two that share the first (0 and 2 or 3): beyond where they part the
-  // next three digits of both are independent, and all 64 of their pairs are as likely. A shift of digits, which is no
-  // nested scramble, would make them equal.
+  // Points 0 and 1 share no leading digit; points 0 and 3 share the first. The next three digits after the first
+  // different one are independent in both points, so all 64 pairs of them are equally likely. A digital shift instead
+  // of a nested scramble would make them equal.
   const ScrambledSobol points(1, 14);
   for (const auto& [other, shared] : std::map<std::size_t, std::size_t>{{1, 0}, {3, 1}}) {
     std::vector<double> counts(64, 0.0);
@@ -115,7 +115,7 @@ TEST(LatinHypercube, PermutationsAreAllAsLikely) {
 }
 
 TEST(LatinHypercube, NeighboursAreIndependent) {
-  // Strata of samples k and k + 1 of a large design.
+  // The strata of neighbouring samples k and k + 1 of a large design.
   const LatinHypercube design(100000, 16);
   std::vector<double> uniforms(100000);
   design.fill({.dimension = 3}, SampleIndex(0), uniforms);
@@ -134,7 +134,7 @@ TEST(LatinHypercube, DimensionsAreIndependent) {
   design.fill({.dimension = 1}, SampleIndex(0), y);
   std::vector<double> counts(1024, 0.0);
   for (std::size_t k = 0; k < x.size(); ++k) counts[cell(x[k], 32) * 32 + cell(y[k], 32)] += 1.0;
-  // Rows and columns hold the same number each, so that 31 x 31 degrees of freedom are left.
+  // Each row and each column has the same number of points, so 31 x 31 degrees of freedom are left.
   double chi2 = 0.0;
   for (const double count : counts) chi2 += (count - 64.0) * (count - 64.0) / 64.0;
   const boost::math::chi_squared law(31.0 * 31.0);
@@ -153,10 +153,11 @@ TEST(LatinHypercube, PlacesInStrataAreUniform) {
 
 using Fill = std::function<void(std::size_t dimension, std::size_t replicate, std::span<double> uniforms)>;
 
-/// A function of six uniforms whose mean is 1: a product of exponentials, or their mean.
+/// Two functions of six uniforms with the mean 1: a product of exponentials (with interactions), and the mean of the
+/// same exponentials (without).
 enum class Terms { with_interactions, without };
 
-/// Its means over 200 replicates of 1024 points.
+/// The moments of 200 estimates of the function's mean, each from one replicate of 1024 points.
 Moments means(const Fill& fill, Terms terms) {
   constexpr std::size_t kPoints = 1024;
   Moments means;
@@ -182,7 +183,8 @@ Fill random_fill() {
   };
 }
 
-/// Unbiased, and with so much less variance than random points have.
+/// Expects that the estimates with a design are unbiased and that their variance is less than that of random points by
+/// more than the factor `times`.
 void expect_better(const Fill& fill, Terms terms, double times) {
   const Moments design = means(fill, terms);
   const Moments random = means(random_fill(), terms);

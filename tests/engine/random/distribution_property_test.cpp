@@ -13,7 +13,7 @@ namespace {
 
 constexpr long double kRoot2 = std::numbers::sqrt2_v<long double>;
 
-/// Share of draws below x <= 0, and the density at x, in long double from the definitions.
+/// The probability of values below x <= 0, and the density at x. Both are computed from the definitions in long double.
 struct Law {
   long double share;
   long double density;
@@ -31,7 +31,7 @@ Law lower_half(const Distribution& d, long double x) {
       return {0.5L * std::erfc(-x / sigma / kRoot2), normal_density(x / sigma) / sigma};
     case Distribution::Shape::truncated_normal: {
       const long double inside = std::erf(width / sigma / kRoot2);
-      // Of the two ways to write the difference, the one that keeps its digits for this cut.
+      // Two equal formulas; the one without cancellation for this cut is used.
       const long double below = width < sigma
                                     ? 0.5L * (inside - std::erf(-x / sigma / kRoot2))
                                     : 0.5L * (std::erfc(-x / sigma / kRoot2) - std::erfc(width / sigma / kRoot2));
@@ -61,7 +61,7 @@ std::vector<Distribution> all_shapes() {
           Distribution::triangular(0.7)};
 }
 
-/// Shares over (0, 1/2], dense near both ends.
+/// Probabilities in (0, 1/2], dense near both ends.
 std::vector<double> lower_shares() {
   std::vector<double> shares;
   for (int power = 2; power <= 54; ++power) {
@@ -78,7 +78,7 @@ TEST(Quantile, InvertsTheDistributionToRounding) {
     for (const double u : lower_shares()) {
       const double x = d.quantile(u);
       const Law law = lower_half(d, x);
-      // Four roundings of u and of x, carried to the share by the density at x.
+      // Allows four rounding errors of u and of x. Those of x change the probability by the density at x.
       const long double tolerance = 4.0L * kUlp * (u + std::abs(x) * law.density);
       EXPECT_LE(std::abs(law.share - u), tolerance)
           << name(d.shape()) << " " << d.sigma() << " " << d.half_width() << " at " << u;
@@ -94,7 +94,8 @@ TEST(Quantile, NormalSharesComeBackToFourteenDigits) {
   }
 }
 
-/// The x <= 0 below which a share lies, from a start near it: Halley's iteration in long double.
+/// The quantile x <= 0 of the standard normal for the probability `share`, by Halley's iteration in long double. start:
+/// an approximation.
 long double exact_normal_quantile(double share, double start) {
   long double x = start;
   for (int k = 0; k < 3; ++k) {
@@ -110,7 +111,8 @@ TEST(Quantile, NormalIsWithinAFewUnitsInTheLastPlace) {
   double sum = 0.0;
   constexpr int kDraws = 200000;
   for (int k = 0; k < kDraws; ++k) {
-    // Alternately as streams draw, and spread evenly over all powers of two down to the smallest draw.
+    // Probabilities that are alternately uniform, as in streams, and spread over all powers of two down to the smallest
+    // draw.
     const double share = std::max(0x1p-54, 0.5 * std::generate_canonical<double, 53>(engine));
     const double u = k % 2 == 0 ? share : std::max(0x1p-54, std::ldexp(share, -(k / 2 % 53)));
     const double x = normal.quantile(u);
@@ -130,7 +132,7 @@ TEST(Quantile, NormalHasNoStepWhereItsFormulasMeet) {
     for (int k = 0; k < 64; ++k) {
       u = std::nextafter(u, 1.0);
       const double x = normal.quantile(u);
-      // One unit of u moves x by less than this in theory; the rest is rounding.
+      // A change of u by one unit in the last place changes x by less than this tolerance; the rest is for rounding.
       EXPECT_NEAR(x, last, 6.0 * std::numeric_limits<double>::epsilon() * std::abs(x)) << seam << " " << k;
       last = x;
     }
@@ -166,7 +168,7 @@ TEST(Quantile, RisesAndStaysWithinTheHalfWidth) {
 TEST(Transform, EqualsTheQuantileOfEachValue) {
   for (const Distribution& d : all_shapes()) {
     std::vector<double> shares{0x1p-54, 0.01, 0.075, 0.3, 0.5, 0.77, 0.925, 1.0 - 0x1p-53};
-    for (int k = 0; k < 1001; ++k) shares.push_back((k + 0.5) / 1001.0);  // more than a block, and a part of one
+    for (int k = 0; k < 1001; ++k) shares.push_back((k + 0.5) / 1001.0);  // more than a block, and part of another
     std::vector<double> values = shares;
     d.transform(values);
     for (std::size_t k = 0; k < shares.size(); ++k) EXPECT_EQ(values[k], d.quantile(shares[k]));
@@ -185,7 +187,7 @@ TEST(Transform, TakesSharesBelowAllDraws) {
 }
 
 TEST(StandardDeviation, OfATruncatedNormalIsThatOfItsDensity) {
-  // Simpson's rule for the second moment over the mass, in units of the cut, with 4000 panels of long double.
+  // The second moment divided by the mass, in units of the cut, by Simpson's rule with 4000 panels in long double.
   for (const double a : {1e-9, 1e-4, 0.1, 0.5, 0.999, 1.0, 1.001, 2.0, 3.0, 6.0, 12.0}) {
     long double mass = 0.0L;
     long double second = 0.0L;

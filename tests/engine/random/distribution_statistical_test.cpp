@@ -7,14 +7,14 @@
 #include "engine/random/stream.h"
 #include "engine/stats/moments.h"
 
-// Fixed seeds. Each check fails for a correct program with probability alpha = 0.001 (|z| > 3.291).
+// The seeds are fixed. Each check fails for a correct program with probability alpha = 0.001 (|z| > 3.291).
 
 namespace poesy {
 namespace {
 
 constexpr double kZ = 3.291;
 
-/// A million draws have the stated mean and standard deviation.
+/// Expects that a million draws have the mean and the standard deviation of the distribution.
 void expect_stated_moments(const Distribution& distribution) {
   constexpr std::size_t kDraws = 1000000;
   std::vector<double> draws(kDraws);

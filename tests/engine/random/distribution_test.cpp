@@ -15,7 +15,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// What a constructor says about a value it refuses; empty when it accepts it.
+/// The message with which a constructor refuses a value. Empty if it accepts the value.
 template <class Make>
 std::string refusal(const Make& make) {
   try {
@@ -131,7 +131,7 @@ TEST(TransformScores, GivesTheValueAtTheSameShare) {
 }
 
 TEST(NormalQuantile, MatchesTabulatedValues) {
-  // Abramowitz and Stegun, Table 26.5, and Wichura 1988 (AS 241) for the far tail.
+  // Values from Abramowitz and Stegun, Table 26.5, and for the far tail from Wichura 1988 (AS 241).
   const Distribution normal = Distribution::normal(1.0);
   EXPECT_EQ(normal.quantile(0.5), 0.0);
   EXPECT_NEAR(normal.quantile(0.975), 1.9599639845400545, 1e-15);

@@ -10,7 +10,7 @@
 namespace poesy {
 namespace {
 
-/// The first points, [count x dimensions].
+/// [count x dimensions] The first Sobol' points after the origin.
 std::vector<double> sobol_points(std::size_t count, std::size_t dimensions) {
   std::vector<double> points(count * dimensions);
   SobolSequence(dimensions).next(points);
@@ -56,7 +56,7 @@ TEST(SobolPoints, StaysStrictlyInside) {
 }
 
 TEST(SobolPoints, FillsEveryCellOfEachAxisOnce) {
-  // With the origin, the first 2^m points put exactly one into each of 2^m equal cells of every axis.
+  // The first 2^m points, with the origin, have exactly one point in each of 2^m equal cells of every axis.
   constexpr std::size_t kCells = 256;
   constexpr std::size_t kDimensions = 6;
   const std::vector<double> points = sobol_points(kCells - 1, kDimensions);

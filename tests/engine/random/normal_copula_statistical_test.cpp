@@ -12,20 +12,20 @@
 #include "engine/random/stream.h"
 #include "engine/stats/rank_correlation.h"
 
-// Fixed seeds. Each check fails for a correct program with probability alpha = 0.001.
+// The seeds are fixed. Each check fails for a correct program with probability alpha = 0.001.
 
 namespace poesy {
 namespace {
 
 constexpr double kZ = 3.291;
-constexpr double kKolmogorov = 1.9495;  ///< of sqrt(n) times the largest difference
+constexpr double kKolmogorov = 1.9495;  ///< quantile of sqrt(n) times the largest difference, at alpha
 constexpr std::size_t kDraws = 200'000;
 
 constexpr double kFirstTwo = 0.6;
 constexpr double kFirstThird = -0.45;
 constexpr double kLastTwo = 0.3;
 
-/// Errors of three distributions, correlated.
+/// [3][kDraws] Correlated errors with these three distributions.
 std::vector<std::vector<double>> draws_of(const std::vector<Distribution>& distributions) {
   const NormalCopula copula(
       std::vector{1.0, kFirstTwo, kFirstThird, kFirstTwo, 1.0, kLastTwo, kFirstThird, kLastTwo, 1.0});
@@ -47,7 +47,7 @@ std::vector<double> measured_values() {
   return values;
 }
 
-/// Kolmogorov's statistic of draws against the quantile function from which they are made.
+/// Kolmogorov's statistic: the largest difference between the empirical distribution of draws and `distribution`.
 double largest_difference(std::vector<double> draws, const Distribution& distribution) {
   std::ranges::sort(draws);
   double largest = 0.0;
@@ -85,7 +85,7 @@ double correlation(const std::vector<double>& x, const std::vector<double>& y) {
   return (xy - sx * sy / kDraws) / std::sqrt((xx - sx * sx / kDraws) * (yy - sy * sy / kDraws));
 }
 
-// Fisher's transformation of the correlation of normals has the standard error 1 / sqrt(n - 3).
+// Fisher's transformation (atanh) of the correlation of n normal pairs has the standard error 1 / sqrt(n - 3).
 TEST(NormalCopula, NormalErrorsHaveTheCorrelation) {
   const auto rows = draws_of({Distribution::normal(1e-3), Distribution::normal(2.0), Distribution::normal(0.5)});
   const auto expect_correlation = [&](std::size_t i, std::size_t j, double rho) {
@@ -97,7 +97,7 @@ TEST(NormalCopula, NormalErrorsHaveTheCorrelation) {
   expect_correlation(1, 2, kLastTwo);
 }
 
-// The standard error of Spearman's r is below 1.06 / sqrt(n).
+// The standard error of Spearman's rank correlation is below 1.06 / sqrt(n).
 TEST(NormalCopula, OtherErrorsHaveItsRankCorrelation) {
   const auto rows =
       draws_of({Distribution::measured(measured_values()), Distribution::triangular(3.0), Distribution::uniform(1.0)});

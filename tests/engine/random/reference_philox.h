@@ -7,7 +7,7 @@
 
 namespace poesy::test {
 
-/// High and low word of a 64 x 64 bit product.
+/// The high and the low word of the 128-bit product of two 64-bit words.
 inline std::pair<std::uint64_t, std::uint64_t> full_product(std::uint64_t a, std::uint64_t b) {
   __extension__ using Wide = unsigned __int128;
   const Wide product = static_cast<Wide>(a) * b;

@@ -20,7 +20,7 @@ std::vector<double> scrambled(const ScrambledSobol& points, const DesignColumn& 
   return uniforms;
 }
 
-/// Sobol' points with the origin, [dimensions x count].
+/// [dimensions][count] The first unscrambled Sobol' points, with the origin.
 std::vector<std::vector<double>> plain(std::size_t dimensions, std::size_t count) {
   std::vector<double> rows((count - 1) * dimensions);
   SobolSequence(dimensions).next(rows);
@@ -31,14 +31,14 @@ std::vector<std::vector<double>> plain(std::size_t dimensions, std::size_t count
   return columns;
 }
 
-/// Binary digits that two numbers of [0, 1) have in common, 30 at most.
+/// The number of leading binary digits that two numbers in [0, 1) have in common, at most 30.
 int common_digits(double x, double y) {
   const auto digits = [](double u) { return static_cast<std::uint32_t>(u * 0x1p30); };
   return std::countl_zero(digits(x) ^ digits(y)) - 2;
 }
 
 TEST(ScrambledSobol, KeepsTheDigitsThatAnyTwoPointsShare) {
-  // What a nested scramble is: two coordinates share as many leading digits as before.
+  // This defines a nested scramble: any two coordinates share as many leading digits as before.
   constexpr std::size_t kPoints = 600;
   const ScrambledSobol points(8, 3);
   const auto before = plain(8, kPoints);
@@ -67,7 +67,7 @@ TEST(ScrambledSobol, HasOnePointInEveryStratumOfEachAxis) {
   }
 }
 
-/// How many points are in each of 2^split x 2^(bits - split) boxes of the unit square, ascending.
+/// The numbers of points in 2^split x 2^(bits - split) equal boxes of the unit square.
 std::vector<int> box_counts(const std::vector<double>& x, const std::vector<double>& y, int split, int bits) {
   std::vector<int> counts(std::size_t{1} << bits, 0);
   for (std::size_t p = 0; p < x.size(); ++p) {

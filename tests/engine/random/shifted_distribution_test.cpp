@@ -20,15 +20,16 @@ std::vector<Distribution> centred() {
           Distribution::uniform(0.7), Distribution::triangular(0.7)};
 }
 
-/// Shares inside (0, 1), with those next to 0, 1/2 and 1.
+/// Probabilities in (0, 1), among them the nearest ones to 0, 1/2 and 1.
 std::vector<double> shares() {
   std::vector<double> list{0x1p-54,       1e-9,          0.25 - 0x1p-55, 0.25, 0.5 - 0x1p-54, 0.5,
                            0.5 + 0x1p-53, 0.5 + 0x1p-52, 0.75,           0.9,  1.0 - 0x1p-53};
-  for (int k = 0; k < 1201; ++k) list.push_back((k + 0.5) / 1201.0);  // more than two blocks, and a part of one
+  for (int k = 0; k < 1201; ++k) list.push_back((k + 0.5) / 1201.0);  // more than two blocks, and part of another
   return list;
 }
 
-/// The integral over (0, 1) of a power of the quantile, by Gauss-Legendre in panels that grow finer towards 0, 1/2, 1.
+/// The moment E x^power, as the integral of the quantile's power over (0, 1). Gauss-Legendre in panels that become
+/// finer towards 0, 1/2 and 1.
 double moment(const Distribution& distribution, int power) {
   using Gauss = boost::math::quadrature::gauss<double, 20>;
   const auto value = [&](double u) { return std::pow(distribution.quantile(u), power); };
@@ -52,7 +53,7 @@ TEST(ShiftedDistribution, HasTheMomentsOfBothHalves) {
     EXPECT_NEAR(moment(shifted, 1), 0.0, 1e-12) << name(plain.shape());
     EXPECT_NEAR(moment(shifted, 2), variance + kShift * kShift, 1e-10) << name(plain.shape());
     EXPECT_NEAR(moment(shifted, 3), 0.0, 1e-12) << name(plain.shape());
-    // E(x + d)^4 = E x^4 + 6 d^2 E x^2 + d^4.
+    // For a symmetric x and the shift d: E(x + d)^4 = E x^4 + 6 d^2 E x^2 + d^4.
     const double fourth = moment(plain, 4) + 6.0 * kShift * kShift * variance + std::pow(kShift, 4);
     EXPECT_NEAR(moment(shifted, 4), fourth, 1e-9 * (1.0 + fourth)) << name(plain.shape());
   }

@@ -17,7 +17,7 @@ struct TwoMoments {
   double deviation;
 };
 
-/// Of a sample, with n - 1.
+/// Mean and standard deviation of a sample, with the divisor n - 1.
 TwoMoments of_sample(const std::vector<double>& values) {
   const auto n = static_cast<double>(values.size());
   const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
@@ -26,7 +26,7 @@ TwoMoments of_sample(const std::vector<double>& values) {
   return {mean, std::sqrt(squares / (n - 1.0))};
 }
 
-/// Of f at draws, by the middles of equal shares.
+/// Mean and standard deviation of f(x) over the distribution of `parts`, by the midpoint rule over the probability.
 template <class Function>
 TwoMoments of_draws(const SmoothedValues& parts, const Function& f) {
   constexpr int kSteps = 2'000'000;
@@ -42,7 +42,7 @@ TwoMoments of_draws(const SmoothedValues& parts, const Function& f) {
 
 double identity(double x) { return x; }
 
-/// So many values of this seed, some of them normal, some skewed, some in groups.
+/// Random values. By the seed they are skewed, in groups of equal values, or symmetric with long tails.
 std::vector<double> some_values(std::size_t count, std::uint64_t seed) {
   std::vector<double> values(count);
   fill_uniforms({seed, Purpose::error_samples, FactorIndex(0), PoseIndex(0)}, SampleIndex(0), values);
@@ -67,7 +67,8 @@ TEST(SmoothedValues, HaveMeanAndDeviationOfTheSample) {
   }
 }
 
-/// Ten parts of which one stands apart: magnitudes, too, have the mean and the deviation of the parts.
+/// One of ten parts is far from the others. The magnitudes too have about the mean and the standard deviation of the
+/// parts.
 TEST(SmoothedValues, AreRightWhereOnePartStandsApart) {
   const std::vector<double> values{0.0, 0.0, 0.0, 0.0, 0.0, 0.001, 0.001, 0.001, 0.001, 0.5};
   const TwoMoments drawn = of_draws(SmoothedValues(values), [](double x) { return std::abs(x); });
@@ -84,7 +85,7 @@ TEST(SmoothedValues, SpreadByTheDistanceOfNeighbours) {
     std::vector<double> distance;
     for (const double other : values) distance.push_back(std::abs(other - values[i]));
     std::ranges::sort(distance);
-    ratio.push_back(parts.half_widths()[i] / distance.at(3));  // the first is the value itself, ceil(sqrt(8)) is 3
+    ratio.push_back(parts.half_widths()[i] / distance.at(3));  // third neighbour: ceil(sqrt(8)) = 3; at(0) is the value
     squares += parts.half_widths()[i] * parts.half_widths()[i] / 3.0;
   }
   for (const double one : ratio) EXPECT_NEAR(one, ratio.front(), 1e-12);
@@ -105,7 +106,7 @@ TEST(SmoothedValues, HaveAQuantileThatIsTheInverseOfTheShare) {
       EXPECT_GE(x, before);
       EXPECT_LE(x, parts.greatest());
       before = x;
-      // Values that are not spread take a share of all draws.
+      // A value that is not spread has a probability of its own, so its share is not unique.
       const auto [low, high] = std::ranges::equal_range(parts.knots(), x);
       if (high - low > 1) continue;
       EXPECT_NEAR(parts.share(x), u, 1e-12);

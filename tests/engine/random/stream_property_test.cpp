@@ -33,7 +33,7 @@ TEST(RandomBits, DiffersWhereAnyComponentDiffers) {
       }
     }
   }
-  // Two equal among 8192 random words of 64 bits have a probability of 2e-12.
+  // The probability that two of 8192 random 64-bit words are equal is 2e-12.
   EXPECT_EQ(draws.size(), addresses);
 }
 
@@ -58,7 +58,7 @@ TEST(FillUniforms, EqualsTheSingleDrawsFromAnyStart) {
 }
 
 TEST(FillUniforms, ManyDrawsEqualTheSingleOnes) {
-  // Long enough for every way to compute blocks, from addresses that fill 64 bits.
+  // Streams that are long enough for every code path, at addresses that use all 64 bits.
   const StreamAddress wide{.seed = 0xfedcba9876543210,
                            .purpose = Purpose::sampling_design,
                            .factor = FactorIndex(0xffffffffffffffff),

@@ -7,8 +7,8 @@
 
 #include "engine/random/stream.h"
 
-// Fixed seeds. Each check fails for a truly random stream with probability alpha = 0.001, two-sided: too uniform is
-// as suspicious as too uneven.
+// The seeds are fixed. Each check fails for a truly random stream with probability alpha = 0.001. The checks are
+// two-sided: a stream that is too uniform fails like one that is too uneven.
 
 namespace poesy {
 namespace {
@@ -36,7 +36,8 @@ void expect_even(const std::vector<double>& counts) {
   EXPECT_LT(chi2, boost::math::quantile(boost::math::complement(law, 0.5 * kAlpha)));
 }
 
-/// Counts pairs (a_k, b_k) in a grid of equal cells of the unit square: uneven if the two streams depend on each other.
+/// Counts the pairs (a_k, b_k) in a grid of equal cells of the unit square. The counts are uneven if the two streams
+/// depend on each other.
 void expect_independent(const std::vector<double>& a, const std::vector<double>& b) {
   constexpr std::size_t kCells = 32;
   std::vector<double> counts(kCells * kCells, 0.0);
@@ -64,7 +65,7 @@ TEST(Stream, IsUniformByKolmogorovAndSmirnov) {
     const double above = static_cast<double>(k + 1) / kDraws;
     distance = std::max({distance, draws[k] - below, above - draws[k]});
   }
-  // Kolmogorov's distribution has its 0.0005 and 0.9995 quantiles at 0.3471 and 2.0368 over sqrt(n).
+  // The quantiles of Kolmogorov's distribution for 0.0005 and 0.9995 are 0.3471 / sqrt(n) and 2.0368 / sqrt(n).
   EXPECT_GT(distance, 0.3471 / std::sqrt(kDraws));
   EXPECT_LT(distance, 2.0368 / std::sqrt(kDraws));
 }
@@ -86,7 +87,7 @@ TEST(Stream, EachBitIsSetHalfTheTime) {
     const std::uint64_t bits = random_bits(address_of(7, 9), SampleIndex(k));
     for (std::size_t b = 0; b < 64; ++b) set[b] += static_cast<int>(bits >> b & 1);
   }
-  // z at alpha = 0.001 shared among 64 bits (Bonferroni): 4.32.
+  // alpha = 0.001 divided by 64 bits (Bonferroni) gives z = 4.32.
   for (const int count : set) EXPECT_LE(std::abs(count - kDraws / 2), 4.32 * 0.5 * std::sqrt(kDraws));
 }
 

@@ -19,7 +19,7 @@ struct KnownAnswer {
 
 constexpr std::uint64_t kOnes = ~std::uint64_t{0};
 
-/// The lines "philox4x64 10" of kat_vectors in Random123's own distribution.
+/// The known answers for "philox4x64 10" in the file kat_vectors of Random123.
 const std::array<KnownAnswer, 3> kKnownAnswers{{
     {{0, 0, 0, 0}, {0, 0}, {0x16554d9eca36314c, 0xdb20fe9d672d0fdc, 0xd7e772cee186176b, 0x7e68b68aec7ba23b}},
     {{kOnes, kOnes, kOnes, kOnes},

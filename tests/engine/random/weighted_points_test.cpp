@@ -9,7 +9,8 @@
 namespace poesy {
 namespace {
 
-/// Means of (x / half_width)^k over the points and by formula, for all k that are exact.
+/// Compares the moments of x / half_width over the weighted points with a formula, for all degrees that must be exact.
+/// expected(k): the moment of degree k.
 void expect_moments(const Distribution& distribution, const std::function<double(int)>& expected) {
   const auto [points, weights] = weighted_points(distribution);
   for (int k = 0; k <= static_cast<int>(kExactDegree); ++k) {

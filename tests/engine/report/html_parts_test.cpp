@@ -24,7 +24,7 @@ TEST(Escaped, KeepsUtf8AndReplacesWhatIsNone) {
   EXPECT_EQ(escaped("ü € 😀"), "ü € 😀");
   const std::string replaced = "\xEF\xBF\xBD";
   for (const char* bad : {"\xFF", "\x80", "\x01", "\x7F", "\xC3"}) EXPECT_EQ(escaped(bad), replaced) << bad;
-  EXPECT_EQ(escaped("\xC0\xAF"), replaced + replaced);                 // overlong
+  EXPECT_EQ(escaped("\xC0\xAF"), replaced + replaced);                 // overlong encoding
   EXPECT_EQ(escaped("\xED\xA0\x80"), replaced + replaced + replaced);  // a surrogate
   EXPECT_EQ(escaped("\xE2\x82"
                     "a"),
@@ -184,7 +184,7 @@ TEST(HtmlTable, PutsDecimalPointsBelowEachOther) {
   }
 }
 
-/// Of a study with this line under [solver].
+/// Whether `failed` of 100 000 solves are many for a study with this line under [solver].
 bool many_of_a_hundred_thousand(std::uint64_t failed, const std::string& line) {
   StoredResult result;
   result.study_text = "max_not_converged = 0.7\n[solver]\nmethod = \"newton\"\n" + line + "\n";

@@ -31,7 +31,7 @@ TEST(JsonTables, HaveEveryCellAsValueAndAsText) {
         if (column.kind == Column::Kind::text) {
           EXPECT_EQ(value, cell.text);
         } else if (cell.value) {
-          EXPECT_EQ(value.get<double>(), *cell.value);  // every bit
+          EXPECT_EQ(value.get<double>(), *cell.value);  // exactly
         } else {
           EXPECT_TRUE(value.is_null());
         }

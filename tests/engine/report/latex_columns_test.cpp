@@ -12,7 +12,7 @@
 namespace poesy {
 namespace {
 
-/// A table of one row in which each column has one cell; numbers are "0.123456".
+/// A table with one row. Number columns have the cell "0.123456", text columns their name.
 Table table_of(std::vector<Column> columns) {
   Table table{.name = "some", .caption = "Some", .columns = std::move(columns)};
   table.rows.emplace_back();
@@ -35,7 +35,7 @@ double width_of(const std::vector<ColumnLayout>& layout) {
   return width;
 }
 
-/// Widths that LaTeX gives to boxes of this content in Computer Modern Roman of 8 points.
+/// The expected values are the widths (pt) that LaTeX gives to this text in Computer Modern Roman at 8 pt.
 TEST(LatexWidth, IsThatOfLatex) {
   constexpr double kRounding = 0.1;  // each character's width is rounded up to a tenth of a point
   EXPECT_NEAR(latex_width("0"), 4.25, kRounding);
@@ -128,7 +128,7 @@ TEST(LatexColumns, AFileNamesTheColumnsThatDoNotFit) {
   const std::string text = latex_of(table, 85.0);
   EXPECT_NE(text.find("% 85 mm have no room for: n6, n7, n8, n9\n"), std::string::npos);
   EXPECT_EQ(latex_of(table, 170.0).find("no room"), std::string::npos);
-  EXPECT_NE(latex_of(table, 170.0).find("\\begin{table*}"), std::string::npos);  // over both columns of a page
+  EXPECT_NE(latex_of(table, 170.0).find("\\begin{table*}"), std::string::npos);  // spans both columns of a page
 }
 
 }  // namespace

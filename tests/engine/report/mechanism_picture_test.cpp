@@ -11,7 +11,7 @@
 namespace poesy {
 namespace {
 
-/// Two limbs: one with each type of joint, one slide from a joint to another.
+/// Two limbs: one with each type of joint, and one with a slide between two revolute joints.
 Sketch sketch() {
   Sketch made{.limbs = {}, .platform = {0.0, 0.0, 0.5}, .tool = {{0.0, 0.0, 0.6}}};
   std::vector<SketchedJoint> first;
@@ -43,7 +43,7 @@ TEST(MechanismPicture, HasEveryJointInFourViews) {
   EXPECT_EQ(count(svg, "<g "), count(svg, "</g>"));
 }
 
-/// Of a joint's glyph in the first view, from the front.
+/// The position (x, y) of a joint's glyph in the first view, which is from the front.
 std::pair<double, double> place_of(const std::string& svg, const std::string& name) {
   std::smatch match;
   const std::regex joint(R"re(translate\(([\d.]+) ([\d.]+)\)"[^>]*><title>[^<]* )re" + name + "</title>");
@@ -56,7 +56,8 @@ TEST(MechanismPicture, ShowsASlideBetweenTheJointsThatItConnects) {
   EXPECT_NEAR(place_of(svg, "q&lt;").second, (place_of(svg, "A").second + place_of(svg, "B").second) / 2, 0.11);
 }
 
-/// A Tricept: three legs with balls on the platform, and a tube that slides in a gimbal on the base.
+/// A Tricept: three legs with ball joints on the platform, and a central strut that slides in a gimbal on the base.
+/// slide: the strut's direction.
 Sketch tricept(const SketchVector& slide) {
   Sketch made{.limbs = {}, .platform = {0.0, 0.0, -0.7}, .tool = {}};
   made.limbs = {{{"gimbal", 'U', false, {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, false},
@@ -72,7 +73,7 @@ Sketch tricept(const SketchVector& slide) {
   return made;
 }
 
-/// The heights of a body's corners, mm, in the first view.
+/// The z coordinates (mm) of the corners of a body (base or platform).
 std::vector<double> heights_of(const std::string& svg, const std::string& body) {
   std::smatch match;
   EXPECT_TRUE(std::regex_search(svg, match, std::regex("data-p=\"([^\"]*)\" class=\"" + body + "\"")));
@@ -84,14 +85,14 @@ std::vector<double> heights_of(const std::string& svg, const std::string& body) 
 
 TEST(MechanismPicture, ShowsAStrutBetweenItsJointAndThePlatform) {
   const std::string svg = mechanism_picture(tricept({0.0, 0.0, -1.0}), "Tricept");
-  EXPECT_EQ(heights_of(svg, "platform"), std::vector<double>(3, -700.0));  // the platform does not reach to the gimbal
+  EXPECT_EQ(heights_of(svg, "platform"), std::vector<double>(3, -700.0));  // the gimbal is not a corner of it
   const double gimbal = place_of(svg, "gimbal").second;
   const double ball = place_of(svg, "B0").second;
   EXPECT_NEAR(place_of(svg, "slide").second, (gimbal + ball) / 2, 0.11);
   EXPECT_NEAR(place_of(svg, "slide").first, place_of(svg, "gimbal").first, 0.11);
 }
 
-/// A slide across the way to the platform carries it where it is.
+/// A slide that is not directed to the platform is drawn at its joint, and the platform includes this joint.
 TEST(MechanismPicture, LeavesOtherSlidesAtTheirJoint) {
   const std::string svg = mechanism_picture(tricept({1.0, 0.0, 0.0}), "Tricept");
   const std::vector<double> heights = heights_of(svg, "platform");
@@ -99,7 +100,7 @@ TEST(MechanismPicture, LeavesOtherSlidesAtTheirJoint) {
   EXPECT_LT(std::abs(place_of(svg, "slide").second - place_of(svg, "gimbal").second), 20.0);
 }
 
-/// The angles of a body's corners about the z axis, deg, in the order of the first view.
+/// The angles (deg) of a body's corners about the z axis, in the order in which the polygon is drawn.
 std::vector<double> corners_of(const std::string& svg, const std::string& body) {
   std::smatch match;
   EXPECT_TRUE(std::regex_search(svg, match, std::regex("data-p=\"([^\"]*)\" class=\"" + body + "\"")));
@@ -118,7 +119,7 @@ std::vector<double> corners_of(const std::string& svg, const std::string& body) 
 
 TEST(MechanismPicture, DrawsBodiesByTheirHulls) {
   Sketch made{.limbs = {}, .platform = {0.0, 0.0, 0.5}, .tool = {}};
-  // As copies of two limbs give them: crossing each other in the order of limbs.
+  // In this order of the limbs the polygon through the joints would cross itself.
   for (const double degrees : {10.0, 130.0, 250.0, -10.0, 110.0, 230.0}) {
     const double angle = degrees * std::numbers::pi / 180.0;
     const SketchVector foot{0.3 * std::cos(angle), 0.3 * std::sin(angle), 0.0};
@@ -134,7 +135,7 @@ TEST(MechanismPicture, DrawsBodiesByTheirHulls) {
     double round = 0.0;
     for (std::size_t n = 0; n < angles.size(); ++n) {
       const double turn = std::remainder(angles[(n + 1) % angles.size()] - angles[n], 360.0);
-      EXPECT_GT(turn * std::remainder(angles[1] - angles[0], 360.0), 0.0) << body;  // always to the same side
+      EXPECT_GT(turn * std::remainder(angles[1] - angles[0], 360.0), 0.0) << body;  // all turns have the same sign
       round += turn;
     }
     EXPECT_NEAR(std::abs(round), 360.0, 1e-9) << body;
@@ -153,14 +154,14 @@ TEST(MechanismPicture, ShowsFeaturesInTheFramesOfTheirParts) {
   EXPECT_EQ(count(svg, "<title>bore of limb 1: position 0.05 mm to A|B</title>"), 4u);
   EXPECT_EQ(count(svg, "<title>face of limb 2</title>"), 4u);
   EXPECT_EQ(count(svg, "<title>rod of limb 2: tolerance 0.02 mm</title>"), 4u);
-  // z of the frame is -x of the base, and x is z.
+  // The frame's z axis is -x of the base, and its x axis is z of the base.
   EXPECT_EQ(count(svg, "data-p=\"120.000,0.000,200.000 80.000,0.000,200.000\" class=\"bar\""), 4u);
   EXPECT_EQ(count(svg, "data-p=\"100.000,0.000,230.000\" class=\"dot\""), 4u);
   EXPECT_EQ(count(svg, "class=\"plate\""), 4u);
   EXPECT_EQ(count(svg, "<g "), count(svg, "</g>"));
 }
 
-/// Glyphs have a radius of 6: as joints at one point, at the base, and as those on the platform.
+/// Glyphs of joints at one point, at the base and on the platform, must not overlap. A glyph has a radius of 6.
 TEST(MechanismPicture, ShowsJointsAtOnePointSideBySide) {
   Sketch made = sketch();
   for (const char* name : {"base1", "base2", "base3"}) {
@@ -182,7 +183,7 @@ TEST(MechanismPicture, ShowsJointsAtOnePointSideBySide) {
   }
 }
 
-/// A base that hangs: its z axis points to the ground.
+/// A mechanism whose base hangs, with its z axis to the ground, is drawn upside down.
 TEST(MechanismPicture, ShowsWhatHangsAsItHangs) {
   Sketch hanging = sketch();
   hanging.z_is_down = true;

@@ -12,7 +12,7 @@
 namespace poesy {
 namespace {
 
-/// A yield of k good ones of n, in percent, with Wilson's interval at 95 %.
+/// The yield (%) of k good machines of n, with Wilson's 95 % interval.
 Merit by_wilson(double k, double n) {
   constexpr double kZ = 1.9599639845400545;
   const double p = k / n;
@@ -21,7 +21,7 @@ Merit by_wilson(double k, double n) {
   return {"yield", "%", 100.0 * p, 100.0 * (middle - half), 100.0 * (middle + half), true};
 }
 
-/// The first four cases of Newcombe 1998, table II, method 10: his first sample is B here.
+/// The first four cases of Newcombe 1998, Table II, method 10. Newcombe's first sample is B here.
 TEST(MeritChange, HasTheIntervalsThatNewcombePrints) {
   const struct {
     double k_b, n_b, k_a, n_a, low, high;
@@ -52,7 +52,7 @@ TEST(MeritChange, CoversTheTrueChangeAtLeastAsOftenAsItSays) {
     const MeritChange change = change_of(a, b);
     covered += change.low <= 5.0 && 5.0 <= change.high ? 1 : 0;
   }
-  // One-sided at alpha = 1e-3: 3.09 standard errors below 95 %.
+  // At most 3.09 standard errors below 95 % (one-sided, alpha = 1e-3).
   EXPECT_GE(covered, 0.95 * kTrials - 3.09 * std::sqrt(0.95 * 0.05 * kTrials));
 }
 
@@ -77,7 +77,7 @@ TEST(Merits, AreComparedWhereAllResultsHaveThem) {
   const std::vector<std::vector<Merit>> both{{yield, cost}, {better}, {yield}};
   const Table table = merits_table(both).value();
   ASSERT_EQ(table.rows.size(), 3U);
-  ASSERT_EQ(table.columns[2].name, "verdict");  // early, because a narrow page hides the last columns
+  ASSERT_EQ(table.columns[2].name, "verdict");  // in front, because a narrow page hides the last columns
   EXPECT_EQ(table.columns[3].name, "change");
   EXPECT_EQ(table.rows[0][2].text, "-");
   EXPECT_EQ(table.rows[1][2].text, "better");
@@ -96,7 +96,8 @@ std::vector<std::string> notes_on(const Merit& a, const Merit& b) {
   return {table.notes.begin() + 1, table.notes.end()};
 }
 
-/// The half-width of the change is sqrt(2) on either side of 0.5, so it must shrink by sqrt(8) = 2.83.
+/// The change is 0.5 with a half-width of sqrt(2). The half-width must shrink by sqrt(8) = 2.83, which takes 8 times as
+/// many samples.
 TEST(Merits, SayHowManySamplesWouldTellThemApart) {
   const Merit yield{"yield", "%", 90.0, 89.0, 91.0, true};
   EXPECT_EQ(
@@ -141,7 +142,7 @@ TEST(Merits, HaveNoVerdictUnderOtherRequirements) {
             "No verdict, because the poses differ (poses.workspace): the rms is 2 mm in A and 2 mm in B.");
 }
 
-/// A result with this study, and with a pose at this place.
+/// A result of a study with this text. It has one pose with the single coordinate `place`.
 StoredResult result_of(std::string study, double place) {
   StoredResult result;
   result.study_text = std::move(study);

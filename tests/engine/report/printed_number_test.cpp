@@ -19,7 +19,7 @@ std::vector<std::string> texts(const std::vector<Cell>& column, int digits = 0) 
 TEST(PrintedNumbers, HaveTheZerosThatAreDigitsOfTheNumber) {
   EXPECT_EQ(texts({number_cell(0.4913), number_cell(0.45001), number_cell(0.5), number_cell(2.0)}),
             (std::vector<std::string>{"0.4913", "0.4500", "0.5000", "2.000"}));
-  // 99.755 has five digits, because what is missing from 100 % has three.
+  // 99.755 has five digits, so that the difference from 100 % has three.
   EXPECT_EQ(texts({percent_cell(0.99755), percent_cell(0.078196), percent_cell(0.5), percent_cell(0.0)}, 3),
             (std::vector<std::string>{"99.755", "7.82", "50.0", "0"}));
 }

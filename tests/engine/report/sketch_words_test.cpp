@@ -1,4 +1,4 @@
-// The words for where and how errors displace parts.
+// Tests the words that describe where and how an error displaces a part.
 
 #include "engine/report/sketch_words.h"
 
@@ -8,10 +8,10 @@ namespace poesy {
 namespace {
 
 constexpr std::array<SketchVector, 3> kAsBase{{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
-/// x of the frame is half way between x and z of the base.
+/// The axes of a frame that is turned by -53.13 deg about y of the base.
 constexpr std::array<SketchVector, 3> kTurned{{{0.6, 0.0, 0.8}, {0.0, 1.0, 0.0}, {-0.8, -0.0, 0.6}}};
 
-/// A limb with one joint, whose frame is turned about y of the base, and a bore.
+/// A limb with one joint and a bore. Frame 1 is turned about y of the base.
 Sketch turned_limb() {
   Sketch sketch{
       .limbs = {{{.name = "q", .type = 'P', .actuated = true, .point = {}, .axis = kTurned[2], .has_errors = true}}},

@@ -101,7 +101,7 @@ TEST_F(Export, GlobalIndicesComeInSiAndInDisplayUnits) {
   EXPECT_EQ(table[0][24], "linear_deformation_corrected_ci_high [mm per deg or mm]");
   EXPECT_EQ(table[1][0], "epsilon_1");
   EXPECT_EQ(table[2][0], "delta_1");
-  // global is array 5 of the example: 5000 + 100 r + 10 p.
+  // global is array 5 of the example, with the values 5000 + 100 r + 10 p.
   EXPECT_EQ(table[1][1], "5000");
   EXPECT_DOUBLE_EQ(parse_number(table[1][4]).value(), 5000.0);  // deg per deg
   EXPECT_EQ(table[2][1], "5010");
@@ -114,7 +114,7 @@ TEST_F(Export, GlobalIndicesComeInSiAndInDisplayUnits) {
   EXPECT_DOUBLE_EQ(parse_number(table[2][16]).value(), 11010.0 * 1e-3 * 180.0 / std::numbers::pi);  // deg per mm
 }
 
-/// A unit of two words is one in headings and in columns of text.
+/// A unit of two words stays one unit in the headings and in text columns.
 TEST_F(Export, UnitsMayHoldABlank) {
   CatalogEntry entry = *example_.study.mechanism.entry;
   entry.description.responses[0].dimension = Dimension::moment;
@@ -160,7 +160,7 @@ TEST_F(Export, LocalTableHasFactorsDownAndPosesAcross) {
 
 TEST_F(Export, SolverTablesCountSamples) {
   export_tables(folder_ / "s.h5", folder_.path());
-  // by_status {90 - cell, 7, 2, 1, cell} with cell = 4 p + m: two statuses are solved.
+  // The example has by_status = {90 - cell, 7, 2, 1, cell} with cell = 4 p + m. The first two statuses count as solved.
   EXPECT_EQ(read_table(folder_ / "not_converged.csv")[2], (Cells{"delta_1", "7", "8", "9", "10"}));
   EXPECT_EQ(read_table(folder_ / "solves_converged.csv")[1], (Cells{"epsilon_1", "90", "89", "88", "87"}));
   EXPECT_EQ(read_table(folder_ / "iterations_mean.csv")[1], (Cells{"epsilon_1", "7", "7.01", "7.02", "7.03"}));
@@ -183,7 +183,7 @@ TEST_F(Export, EvaluationHasARowForEachSolve) {
             (Cells{"pose", "sample", "angular_deformation [rad]", "linear_deformation [m]", "signed_angular [rad]",
                    "signed_linear [m]", "twist_21_omega_x [rad]", "twist_21_omega_y [rad]", "twist_21_v_z [m]",
                    "twist_32_omega_x [rad]", "twist_32_omega_y [rad]", "twist_32_v_z [m]", "status", "iterations"}));
-  // Row 7: pose 2, sample 1; responses k / 8 with k = 7 and 12 + 7; details 56..63; status 7 mod 5.
+  // Row 7 is pose 2, sample 1. Its responses are k / 8 with k = 7 and 12 + 7, its details 56 to 63, its status 7 mod 5.
   EXPECT_EQ(table[8], (Cells{"2", "1", "0.875", "2.375", "56", "57", "58", "59", "60", "61", "62", "63", "2", "17"}));
   const auto errors = read_table(folder_ / "errors.csv");
   EXPECT_EQ(errors[0], (Cells{"sample", "delta_2 [m]", "epsilon_1 [rad]"}));
@@ -205,8 +205,8 @@ TEST_F(Export, LabelsOfRowsComeBack) {
             (Cells{"part", "pose", "sample", "angular_deformation [rad]"}));
   EXPECT_EQ(Cells(solves[8].begin(), solves[8].begin() + 4), (Cells{"Gehäuse", "2", "1", "0.875"}));
   EXPECT_EQ(read_table(folder_ / "errors.csv")[2], (Cells{"Gehäuse", "1", "0.001953125", "0.0029296875"}));
-  // The response of solve k is k / 8, and k = 3 m + s is solved where k mod 5 < 2: of row 1 at pose 0 (k = 1) and 3
-  // (10).
+  // The response of solve k = 3 m + s (pose m, row s) is k / 8, and it is solved if k mod 5 < 2. So row 1 is solved at
+  // pose 0 (k = 1) and at pose 3 (k = 10).
   const auto parts = read_table(folder_ / "parts.csv");
   ASSERT_EQ(parts.size(), 4U);
   EXPECT_EQ(Cells(parts[0].begin(), parts[0].begin() + 5),

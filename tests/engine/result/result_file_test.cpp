@@ -20,7 +20,7 @@
 namespace poesy::test {
 namespace {
 
-/// Equal bit by bit, but for NaN, which equals NaN.
+/// Expects equal numbers. NaN equals NaN.
 void expect_same(std::span<const double> found, std::span<const double> expected, const char* name) {
   ASSERT_EQ(found.size(), expected.size()) << name;
   for (std::size_t k = 0; k < found.size(); ++k) {

@@ -17,7 +17,7 @@
 namespace poesy::test {
 namespace {
 
-/// What a FileError says; fails the test when nothing of the kind is thrown.
+/// The message of the FileError that the action throws. The test fails if it throws none.
 template <class Action>
 std::string file_error(const Action& action) {
   try {
@@ -33,7 +33,7 @@ void expect_contains(const std::string& text, const std::string& part) {
   EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in: " << text;
 }
 
-/// A disk of a few pages, or nothing where this process may not mount one.
+/// A file system of 16 KiB, mounted at `folder`. mounted() is false if this process may not mount it.
 class TinyDisk {
  public:
   explicit TinyDisk(const std::string& folder, unsigned long flags = 0) : folder_(folder) {
@@ -190,8 +190,8 @@ TEST(NewerMinorVersion, IsRead) {
   EXPECT_EQ(read_result(folder / "r.h5").kind, "sensitivity");
 }
 
-// Whatever byte is damaged, the reader refuses the file, or sees the difference, or the byte meant nothing: it never
-// crashes.
+// Whatever byte is damaged, the reader never crashes. It refuses the file, or the content hash differs, or the byte has
+// no meaning.
 TEST(DamagedResult, NeverCrashesTheReader) {
   const TempFolder folder;
   const std::string path = folder / "r.h5";
@@ -215,7 +215,7 @@ TEST(DamagedResult, NeverCrashesTheReader) {
   EXPECT_GT(different, 20U);
 }
 
-/// A dataset that claims to have this shape, and has nothing.
+/// Writes a dataset that claims to have this shape but has no data.
 void write_claim(const std::string& path, const std::vector<hsize_t>& shape) {
   const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   const hid_t space = H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
@@ -268,7 +268,7 @@ TEST(DamagedResult, WithoutWhatEveryResultHasIsRefused) {
   }
 }
 
-/// What is said of a result in which `change` put something at /strange.
+/// The message with which a result is refused after `change` added an object /strange to it.
 std::string refusal_of(const std::function<void(hid_t file)>& change) {
   const TempFolder folder;
   const std::string path = folder / "r.h5";
@@ -283,7 +283,7 @@ std::string refusal_of(const std::function<void(hid_t file)>& change) {
   return of_verify;
 }
 
-/// A dataset of three bytes with these properties.
+/// Creates the dataset /strange of three bytes with these creation properties.
 void make_strange(hid_t file, hid_t properties) {
   constexpr hsize_t kLength = 3;
   const hid_t space = H5Screate_simple(1, &kLength, nullptr);

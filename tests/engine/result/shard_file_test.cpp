@@ -9,7 +9,8 @@
 namespace poesy::test {
 namespace {
 
-/// What merge_shards says about shards with these numbers, from 0, of a division into so many.
+/// The message of merge_shards for the shards with these numbers (from 0) of a study that is divided into `count`
+/// shards.
 std::string said_of(const std::vector<std::size_t>& numbers, std::size_t count) {
   const TempFolder folder;
   const Example example;
@@ -33,7 +34,7 @@ TEST(ShardFile, MissingShardsAreNamed) {
   EXPECT_EQ(said_of({0, 1}, 4), "of 4 shards these are missing: 3, 4; run them with --shard and merge all of them");
 }
 
-/// A file may say any number: nobody waits for all of them to be looked for.
+/// A file may claim any number of shards, so only the first missing ones are named and the search ends soon.
 TEST(ShardFile, OfManyMissingShardsTheFirstAreNamed) {
   const std::string first = "1, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21";
   EXPECT_EQ(said_of({1}, std::size_t{1} << 40U),

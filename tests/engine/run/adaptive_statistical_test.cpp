@@ -11,17 +11,18 @@
 #include "tests/engine/run/adaptive_study.h"
 #include "tests/support/kinds.h"
 
-/// Stopping at a time that the samples choose could favour samples that make an interval narrow by chance. So the
-/// intervals at the end are held against the truth, over many seeds.
+/// Adaptive sampling stops when the intervals are narrow, which could favour samples whose interval is narrow by
+/// chance. So these tests measure the coverage of the final intervals over many seeds.
 namespace poesy {
 namespace {
 
 constexpr std::size_t kRepetitions = 1000;
 constexpr double kLevel = 0.95;
-/// Of each test: the probability of failing although the intervals cover at their level.
+/// Probability that a test fails although the coverage is at its level.
 constexpr double kAlpha = 0.001;
 
-/// The response |w e| of the fake mechanism to one normal error of standard deviation 1, over w.
+/// Standard deviation and mean of |e| for a standard normal error e. The response of the fake mechanism to one error is
+/// |w e|.
 const double kFoldedStd = std::sqrt(1.0 - 2.0 / std::numbers::pi);
 const double kFoldedMean = std::sqrt(2.0 / std::numbers::pi);
 
@@ -35,7 +36,7 @@ Study study_of(test::KindOfStudy kind, std::size_t poses, double relative_error)
   return study;
 }
 
-/// weight(response 0, factor 0) at each pose.
+/// The weight of factor 0 in response 0 at each pose.
 std::vector<double> weights(const Plan& plan) {
   std::vector<double> weights;
   for (std::size_t m = 0; m < plan.poses().size(); ++m) {
@@ -44,7 +45,7 @@ std::vector<double> weights(const Plan& plan) {
   return weights;
 }
 
-/// Fewest of the repetitions that a coverage at the level gives but with probability kAlpha.
+/// With coverage at the level, fewer repetitions than this are covered with a probability of at most kAlpha.
 std::size_t fewest_covered() {
   const boost::math::binomial binomial(static_cast<double>(kRepetitions), kLevel);
   return static_cast<std::size_t>(boost::math::quantile(binomial, kAlpha));

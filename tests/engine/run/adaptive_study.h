@@ -11,8 +11,8 @@
 
 namespace poesy::test {
 
-/// An adaptive study of the fake mechanism with all three errors, of which the last has no effect. The two with an
-/// effect come to their end at different milestones, for a uniform error has less kurtosis than a normal one.
+/// An adaptive study of the fake mechanism with all three errors. The last error has no effect. The other two stop at
+/// different milestones, because the kurtosis of a uniform error is less than that of a normal one.
 inline Study adaptive_study(KindOfStudy kind, double relative_error, std::size_t max) {
   static const Catalog catalog = fake_catalog();
   Study study;

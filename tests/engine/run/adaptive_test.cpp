@@ -58,7 +58,7 @@ Bits bits_of(const MonteCarloResult& found) {
   return bits;
 }
 
-/// The bits of a study's result; nothing when it was stopped.
+/// Runs the study. Returns the bits of its result, or none if the run was stopped.
 std::optional<Bits> run(const AdaptiveRun& run, const RunOptions& options) {
   const auto bits = [](const auto& result) { return result ? std::optional(bits_of(*result)) : std::nullopt; };
   return run.study.analysis.kind == &kSensitivityStudy ? bits(run.sensitivity(options))
@@ -97,7 +97,7 @@ TEST(AdaptiveSensitivity, EachErrorEndsAtItsOwnMilestone) {
     EXPECT_EQ(end.relative_half_width[cell], half / index);
     EXPECT_LE(end.relative_half_width[cell], 0.015);
   }
-  // At the milestone before, a response of the first error was not reached.
+  // At the previous milestone, a response to the first error had not yet reached the aim.
   const auto before = [&](std::size_t response) {
     const std::size_t at = response * 3 * milestones + milestones - 2;
     return end.course.half_width[at] / end.course.value[at];
@@ -149,7 +149,8 @@ TEST(AdaptiveMonteCarlo, EndsWhereEveryOverallMeanIsReached) {
     EXPECT_EQ(end.reached[r], 1);
     const double mean = end.course.value[r * end.course.samples.size() + last];
     EXPECT_NEAR(mean, found.overall_mean(r), 1e-12 * mean);
-    // Equal numbers of samples: the variance is the mean of those at the poses, over all samples.
+    // All poses have equally many samples, so the variance of the overall mean is the mean of the poses' variances,
+    // divided by the number of all samples.
     double variance = 0.0;
     for (std::size_t m = 0; m < 3; ++m) variance += std::pow(found.std(r, m), 2) / 3.0;
     const double half = 1.96 * std::sqrt(variance / (3.0 * static_cast<double>(end.samples[0])));
@@ -172,7 +173,8 @@ TEST(Rounds, ExpectTheSolvesThatTheHalfWidthsAskFor) {
   Rounds rounds(run.plan, {1, {0}, 0.95, {0.0}});
   EXPECT_EQ(rounds.samples(0), 1000u);
   EXPECT_EQ(rounds.expected_solves(), 300'000u);
-  // Three times too wide: nine times the samples, and the milestone above that.
+  // The interval is three times wider than the aim, so the prediction is nine times as many samples, rounded up to a
+  // milestone.
   EXPECT_TRUE(rounds.go_on([](std::size_t) { return std::vector<Estimate>{{1.0, {0.97, 1.03}}}; }));
   EXPECT_EQ(rounds.samples(0), 2000u);
   EXPECT_EQ(rounds.expected_solves(), 3u * 12'000u);
@@ -242,7 +244,7 @@ TEST_P(Adaptive, StoppedItGoesOnToTheSameBits) {
   EXPECT_GT(stops, 5u);
 }
 
-/// Every state that a run may be taken up from, the last one at its end.
+/// All states from which a run of the study may be resumed. The last one is that of the complete run.
 std::vector<States> states_of(const AdaptiveRun& study) {
   std::vector<States> states;
   Checkpoints checkpoints([] { return true; },
@@ -279,7 +281,7 @@ TEST_P(Adaptive, ASmallerMaxIsRefused) {
 }
 
 TEST_P(Adaptive, TakesOrRefusesOtherBytes) {
-  // Nothing to compare with: neither the program nor a sanitizer may find fault with it.
+  // There is no expected result. The test passes if neither a contract of the program nor a sanitizer reports an error.
   const std::vector<States> states = states_of(study_);
   States changed = states[states.size() / 2];
   Bytes& state = changed.front();

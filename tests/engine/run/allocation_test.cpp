@@ -1,4 +1,4 @@
-// Nothing is allocated in the hot loop. Every operator new of this program counts.
+// Tests that the hot loop does not allocate memory. Every operator new of this program is counted.
 
 #include <gtest/gtest.h>
 
@@ -26,13 +26,13 @@ std::atomic<std::size_t> allocations{0};
 
 void* counted(std::size_t size, std::size_t alignment) {
   ++allocations;
-  // aligned_alloc wants whole multiples of the alignment.
+  // aligned_alloc requires a size that is a multiple of the alignment.
   const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
   if (void* memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded)) return memory;
   throw std::bad_alloc();
 }
 
-/// Not inlined: GCC takes a free() in the place of a delete for a mistake.
+/// Not inlined, because GCC would warn about free() where it expects delete.
 [[gnu::noinline]] void release(void* memory) noexcept { std::free(memory); }
 
 }  // namespace
@@ -69,7 +69,8 @@ TEST(Allocation, IsCounted) {
   EXPECT_EQ(allocations_of([&] { kept = std::make_unique<double>(1.0); }), 1u);
 }
 
-/// Small errors, because chain::Assembly allocates when it decides whether a machine can be assembled.
+/// Blocks of samples with small errors. With large errors chain::Assembly allocates when it decides whether a machine
+/// can be assembled.
 std::vector<chain::BlockSamples> blocks(std::size_t count) {
   std::mt19937_64 engine(61);
   std::vector<chain::BlockSamples> all;
@@ -101,7 +102,8 @@ TEST(Allocation, NoneInAWarmBlockSolver) {
   expect_no_allocations(all, {}, chain::Fidelity::first_order);
 }
 
-/// Factors of a set, the last one first: rows of the head and of the slides in no convenient order.
+/// The factors of a set in reverse order, so that the errors of the head and of the slides are not in the order of the
+/// model.
 std::vector<FactorIndex> reversed(const ModelDescription& model, const char* set) {
   const std::vector<FactorIndex>& factors = model.find_set(set)->factors;
   return {factors.rbegin(), factors.rend()};
@@ -158,7 +160,8 @@ TEST(Allocation, NoneByResponsesOfOnesOwn) {
   EXPECT_EQ(allocations_of(evaluate), 0u);
 }
 
-/// But for the list of failed samples, in the units that have any. Of small errors, see blocks().
+/// The mean number of allocations in a unit of a warm evaluator, without the list of failed samples in units that have
+/// any. The errors are small, as in blocks().
 template <class UnitOfWork>
 double allocations_per_unit(test::KindOfStudy kind, std::size_t samples) {
   Study study = bench::published_study(4, samples);
@@ -180,7 +183,8 @@ double allocations_per_unit(test::KindOfStudy kind, std::size_t samples) {
 }
 
 TEST(Allocation, NonePerSampleInAUnit) {
-  // The pose's nominal displacements, the three moments that are handed on, and the indices within the unit.
+  // Allocations of a unit: the nominal displacements of the pose, the moments of the three responses, and the indices
+  // within the unit.
   const auto count = [](std::size_t samples) {
     return allocations_per_unit<UnitEvaluator>(&kSensitivityStudy, samples);
   };
@@ -190,7 +194,8 @@ TEST(Allocation, NonePerSampleInAUnit) {
 }
 
 TEST(Allocation, NonePerSampleInAMonteCarloUnit) {
-  // Besides, the buckets of the numbers of the three responses that are handed on, and the sums of main effects.
+  // In addition to those of a sensitivity unit: the buckets of the quantile sketches of the three responses, and the
+  // sums for the main effects.
   const auto count = [](std::size_t samples) {
     return allocations_per_unit<PoseUnitEvaluator>(&kMonteCarloStudy, samples);
   };

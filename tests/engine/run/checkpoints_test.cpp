@@ -18,12 +18,13 @@ using States = std::vector<Bytes>;
 
 Bytes some_bytes(std::size_t count, int value = 1) { return Bytes(count, static_cast<std::byte>(value)); }
 
-/// Of the bytes, which it keeps.
+/// A source of these bytes; it keeps a copy.
 ByteSource source_of(const Bytes& bytes) {
   return [bytes](ByteWriter& to) { to.raw(bytes); };
 }
 
-/// Checkpoints whose saves go into a list, and can be read again; more than ten bytes are large.
+/// Checkpoints in memory. Each save replaces `last`, which can be read again. States of more than ten bytes count as
+/// large.
 struct Saved {
   States last;
   std::size_t saves = 0;
@@ -144,7 +145,7 @@ TEST(Checkpoints, OfARunThatNobodyContinuesKeepNothing) {
   EXPECT_TRUE(checkpoints.complete());
 }
 
-/// Runs a study with a checkpoint at every merge; every file of them, where two after another differ.
+/// Runs a study with a checkpoint after every merge. Returns the contents of the checkpoint files, without repetitions.
 std::vector<std::string> files_of(const Prepared& prepared, std::size_t most_in_memory, const Bits& expected) {
   const TempFolder folder;
   CheckpointFiles files(folder / "r.h5");

@@ -11,7 +11,7 @@ namespace {
 using namespace test;
 using States = std::vector<Bytes>;
 
-/// The states of the stages at each moment at which a run could have been stopped, and its result.
+/// The states of all stages after each merge of a run, from which the run can be resumed, and the bits of its result.
 struct Recorded {
   std::vector<States> states;
   Bits result;
@@ -39,7 +39,7 @@ TEST_P(Continuation, GivesTheSameBits) {
     const Recorded whole = record(prepared);
     EXPECT_EQ(whole.result, expected);
     ASSERT_GT(whole.states.size(), 3U);
-    std::size_t pieces_left = whole.states.size() - 1;  // the last state is of the whole
+    std::size_t pieces_left = whole.states.size() - 1;  // the last state is that of the complete run
     for (const States& state : whole.states) {
       const Recorded rest = record(prepared, state);
       EXPECT_EQ(rest.result, expected);
@@ -92,7 +92,7 @@ TEST_P(Extension, GivesTheBitsOfAFreshRun) {
     const Prepared longer(study_of(GetParam(), more));
     const Bits expected = run(longer, {}).value();
     for (const States& state : record(shorter).states) {
-      // Also from a moment of the extension itself.
+      // The extended run can be resumed from one of its own states too.
       const Recorded extended = record(longer, state);
       EXPECT_EQ(extended.result, expected);
       EXPECT_EQ(record(longer, extended.states[extended.states.size() / 2]).result, expected);
@@ -115,7 +115,7 @@ TEST_P(Extension, NeverGivesFewerSamples) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Extension, testing::Values(&kSensitivityStudy, &kMonteCarloStudy), kind_name);
 
-/// The states that one shard of a study leaves.
+/// The final states of one shard of a study.
 States run_shard(const Prepared& prepared, const Shard& shard) {
   Checkpoints checkpoints([] { return false; }, [](std::span<const ByteSource>) {});
   RunOptions options;
@@ -175,7 +175,7 @@ TEST(Shard, PartsFollowEachOther) {
   }
 }
 
-/// Whether a run function takes these states.
+/// Whether a run can be resumed from these states.
 bool accepted(const Prepared& prepared, const States& states) {
   try {
     record(prepared, states);
@@ -204,7 +204,7 @@ TEST_P(Continuation, RefusesEveryTruncation) {
 }
 
 TEST_P(Continuation, TakesOrRefusesOtherBytes) {
-  // Nothing to compare with: neither the program nor a sanitizer may find fault with it.
+  // There is no expected result. The test passes if neither a contract of the program nor a sanitizer reports an error.
   const Prepared prepared(study_of(GetParam(), Plan::kUnitSamples + 300));
   const std::vector<States> states = record(prepared).states;
   States changed = states[states.size() / 2];
@@ -218,7 +218,7 @@ TEST_P(Continuation, TakesOrRefusesOtherBytes) {
 }
 
 TEST_P(Sharding, MergesOrRefusesAnyOtherBytes) {
-  // Likewise.
+  // There is no expected result here either.
   const Prepared prepared(study_of(GetParam(), Plan::kUnitSamples + 300));
   States changed = run_shard(prepared, {0, 4});
   for (std::size_t index = 1; index < 4; ++index) {

@@ -87,7 +87,8 @@ double draw(const Plan& plan, std::size_t p, std::size_t pose, std::size_t sampl
   return value;
 }
 
-/// Sample by sample, from the draws and the mechanism's closed form.
+/// The failures that a run must list: the first ten of each cell, at most 1000 in all. Computed sample by sample from
+/// the draws and the closed form of the mechanism.
 std::vector<Failure> expected_failures(const Prepared& prepared) {
   const Plan& plan = prepared.plan;
   std::vector<Failure> list;

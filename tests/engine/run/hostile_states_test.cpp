@@ -16,7 +16,7 @@
 #include "tests/support/small_studies.h"
 
 /// States that were changed after a run wrote them. A run must refuse them or continue from them; sanitizers and
-/// contracts see what else goes wrong.
+/// contracts report any other error.
 namespace poesy {
 namespace {
 
@@ -31,11 +31,11 @@ bool accepted(const test::SmallStudy& small, const States& states) {
   } catch (const BytesError&) {
     return false;
   } catch (const InputError&) {
-    return true;  // it continued, and found no tolerances that keep the limits
+    return true;  // the run continued, but no tolerances keep the limits
   }
 }
 
-/// The state with the bytes of this real from position `at` on.
+/// The state with the bytes of `value` written from position `at` on.
 Bytes with_real(Bytes state, std::size_t at, double value) {
   std::memcpy(&state.at(at), &value, std::min(sizeof value, state.size() - at));
   return state;
@@ -74,8 +74,8 @@ INSTANTIATE_TEST_SUITE_P(Small, HostileStates, testing::Range(std::size_t{0}, te
                            return name;
                          });
 
-/// The position of the first real in the state of a job: behind its name, its sizes, the range of its units and how
-/// their solves ended. mean_squares.cpp, machine_loads.cpp and variations.cpp say what is there.
+/// The position of the first real number in the state of a job. Before it are the job's name, its sizes, the range of
+/// its units and the counts of how solves ended; see mean_squares.cpp, machine_loads.cpp and variations.cpp.
 std::size_t first_real(const Bytes& state) {
   ByteReader from(state);
   const std::string job = from.text();

@@ -27,7 +27,7 @@ const Catalog& catalog() {
   return fake;
 }
 
-/// All three errors of the fake mechanism, in an order of their own, each with its own size.
+/// A study of all three errors of the fake mechanism with different sizes. Their order differs from that of the model.
 Study study_of(std::size_t poses, std::size_t samples) {
   Study study;
   study.mechanism = {&catalog().front(), {test::FakeModel::kArm}, 0, {}};
@@ -42,7 +42,8 @@ Study study_of(std::size_t poses, std::size_t samples) {
   return study;
 }
 
-/// The fake mechanism, of which every fourth sample of a block runs into the cap and the one after it is singular.
+/// The fake mechanism, but every fourth sample of a block reaches the iteration cap, and the sample after it is
+/// singular.
 class FailingModel : public test::FakeModel {
  public:
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& /*options*/) const override {
@@ -72,7 +73,7 @@ MonteCarloResult run(const Study& study, const Model& model, std::size_t threads
   return run_monte_carlo(Plan(study, select_poses(study.poses, model).poses), model, study.analysis, options).value();
 }
 
-/// All samples of a response at a pose, one by one from their addresses.
+/// All samples of response r at a pose, recomputed one by one from the addresses of their random numbers.
 std::vector<double> plain_samples(const Study& study, std::span<const double> pose, PoseIndex m, std::size_t r) {
   std::vector<double> values;
   for (std::size_t s = 0; s < study.analysis.samples; ++s) {
@@ -115,12 +116,12 @@ TEST(RunMonteCarlo, AgreesWithAllSamplesSorted) {
   }
 }
 
-/// Numbers that follow from all samples of a response at a pose.
+/// Statistics of all samples of a response at a pose, computed from the sorted samples.
 struct Plain {
   double rms;
-  double low;  ///< order statistics of the ranks for q = 0.9
+  double low;  ///< lower end of the interval of the 0.9 quantile
   double high;
-  double magnitude;  ///< that of rank ceil(0.99 n)
+  double magnitude;  ///< the sample of rank ceil(0.99 n)
 };
 
 Plain plain(std::vector<double> samples, double conf_level) {
@@ -169,10 +170,11 @@ TEST(RunMonteCarlo, FindsTheFoldedNormal) {
   const test::FakeModel model;
   const PoseSet poses = select_poses(study.poses, model).poses;
   const MonteCarloResult found = run(study, model, 2);
-  // Quantiles of |N(0, 1)| for 0.05, 0.5, 0.9 and 0.99: those of N(0, 1) for 0.525, 0.75, 0.95 and 0.995.
+  // The quantiles of |N(0, 1)| for 0.05, 0.5, 0.9 and 0.99 are those of N(0, 1) for 0.525, 0.75, 0.95 and 0.995.
   constexpr double kFolded[4] = {0.0627067779432, 0.6744897501961, 1.6448536269515, 2.5758293035489};
   const double n = kSamples;
-  // Eight cells of six estimates: 48 comparisons at alpha = 0.001 in all, 2e-5 each, need 4.3 standard errors.
+  // There are 48 comparisons: eight cells with six estimates each. alpha = 0.001 in all, or 2e-5 each, means 4.3
+  // standard errors.
   constexpr double kErrors = 4.3;
   for (std::size_t r = 0; r < 2; ++r) {
     for (std::size_t m = 0; m < kPoses; ++m) {

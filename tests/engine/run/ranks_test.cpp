@@ -26,7 +26,8 @@ void expect_code_everywhere(const FakeRun& run, int code) {
   EXPECT_EQ(run.messages_unread, 0U);
 }
 
-/// Whose state is the sequence of numbers that were merged; any output but n^2 is an error. The body of every rank.
+/// The program of every rank. The work on the number n returns n^2, and rank 0 merges the results in order. The state
+/// is the sequence of merged numbers.
 struct Squares {
   std::size_t count = 0;
   std::function<std::size_t(std::size_t rank, std::size_t n)> work = [](std::size_t, std::size_t n) { return n * n; };
@@ -34,7 +35,7 @@ struct Squares {
   std::function<void(std::size_t rank)> on_worker = [](std::size_t) {};
   std::function<void(std::size_t rank)> on_pack = [](std::size_t) {};
 
-  /// The numbers merged, on every rank; nothing when stopped.
+  /// The merged numbers, the same on every rank. None if the run was stopped.
   std::optional<std::vector<std::size_t>> operator()(const RunOptions& options) const {
     std::vector<std::size_t> merged;
     const ByteSource state = [&](ByteWriter& to) {
@@ -180,7 +181,7 @@ TEST(Ranks, ASlowOneHoldsUpNothingButTheEnd) {
   expect_code_everywhere(ended, 0);
 }
 
-/// A run of squares in which rank 0 keeps checkpoints; what it kept last.
+/// Runs Squares on fake ranks. Rank 0 saves checkpoints; `stages` is the last one.
 struct Kept {
   std::vector<Bytes> stages;
   std::size_t saves = 0;
@@ -201,7 +202,7 @@ struct Kept {
     });
   }
 
-  /// What is kept is taken up by this process alone and brought to its end.
+  /// Expects that a run on this process alone can be resumed from the last checkpoint and completed.
   void expect_continued(Squares squares) const {
     Checkpoints checkpoints([] { return false; }, [](std::span<const ByteSource>) {}, stages);
     RunOptions options;
@@ -288,7 +289,7 @@ TEST_P(LeavingRank, AlsoWhenItCannotPack) {
   };
   const FakeRun ended = Kept()(4, squares);
   expect_code_everywhere(ended, 0);
-  if (GetParam() == 0) return;  // it packs nothing
+  if (GetParam() == 0) return;  // rank 0 packs no results
   ASSERT_TRUE(ended.left);
   EXPECT_EQ(ended.left->reason, LeaveReason::bad_input);
 }
@@ -387,7 +388,7 @@ TEST(Ranks, WithoutRoomForAStateEndTheRunOnAll) {
   EXPECT_EQ(ended.left->reason, LeaveReason::file_trouble);
   EXPECT_TRUE(ended.left->text.ends_with(kTooLittleMemory)) << ended.left->text;
 
-  // At the end rank 0 has all that it needs.
+  // At the end of the run rank 0 need not send its state, so there is enough room.
   ended = run_on_fake_ranks(
       3, [](Team& team) { EXPECT_EQ(Squares{4000}(options_of(team)), up_to(4000)); }, kRoom);
   expect_code_everywhere(ended, 0);

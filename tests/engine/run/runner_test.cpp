@@ -63,13 +63,13 @@ TEST(RunSensitivity, HasTheSameBitsForAnyNumberOfThreads) {
 }
 
 TEST(RunSensitivity, FindsTheKnownIndices) {
-  // |w e| with e normal has the standard deviation |w| sigma sqrt(1 - 2/pi).
+  // For a normal error e with standard deviation sigma, |w e| has the standard deviation |w| sigma sqrt(1 - 2/pi).
   const Study study = study_of(4, 20000);
   const SensitivityResult result = run(study, 2);
   const Prepared prepared(study);
   const double folded = std::sqrt(1.0 - 2.0 / std::numbers::pi);
-  // Relative standard error of a standard deviation, sqrt((kurtosis - 1) / 4 n), with the folded normal's kurtosis
-  // 3.87; 24 comparisons at alpha = 0.001 in all need 4.1 of them.
+  // The relative standard error of a standard deviation is sqrt((kurtosis - 1) / (4 n)); the kurtosis of a folded
+  // normal is 3.87. For 24 comparisons and alpha = 0.001 in all, 4.1 standard errors are allowed.
   const double tolerance = 4.1 * std::sqrt((3.87 - 1.0) / (4.0 * 20000.0));
   for (std::size_t r = 0; r < result.responses(); ++r) {
     for (std::size_t p = 0; p < result.factors(); ++p) {

@@ -16,9 +16,9 @@
 namespace poesy {
 namespace {
 
-/// Responses of samples in which one error varies.
+/// The outcomes of samples in which one error varies.
 struct Outcomes {
-  std::vector<double> responses;  ///< [R x B]
+  std::vector<double> responses;  ///< [responses x samples]
   std::vector<SolveStatus> status;
 
   std::size_t by_series() const { return static_cast<std::size_t>(std::ranges::count(status, SolveStatus::by_series)); }
@@ -36,7 +36,7 @@ Outcomes evaluated(const Model& model, const std::vector<double>& pose, FactorIn
   return found;
 }
 
-/// Responses y = f(e) of one error e.
+/// A model with one error e and the response y = f(e).
 class Curve : public test::FunctionModel {
  public:
   using Function = std::function<double(double error)>;
@@ -61,7 +61,8 @@ std::vector<double> drawn(double largest, std::size_t count = 1000) {
   return values;
 }
 
-/// Compares series with the function, and returns the number of samples by series.
+/// Compares the responses of the series model with the function. Returns the number of samples that were evaluated by
+/// series.
 std::size_t by_series(const Curve::Function& f, bool is_magnitude, double largest = kRange) {
   const auto model = with_series(std::make_shared<Curve>(f, is_magnitude));
   const std::vector<double> values = drawn(largest);
@@ -88,7 +89,7 @@ TEST(SeriesModel, SolvesWhatIsNotSmooth) {
 }
 
 TEST(SeriesModel, SolvesWhereTheCertificateFails) {
-  // All nodes see a constant, and the first check, at 0, does not.
+  // The function is constant at all nodes of the series, but not at the first check point, 0.
   EXPECT_EQ(by_series([](double e) { return std::abs(e) < 0.05 ? 2.0 : 1.0; }, false), 0u);
 }
 
@@ -96,7 +97,7 @@ TEST(SeriesModel, SolvesBeyondTheRangeAndNearARoot) {
   const std::size_t inside = by_series([](double e) { return std::sin(0.3 * e); }, false, 1.5 * kRange);
   EXPECT_GT(inside, 600u);
   EXPECT_LT(inside, 730u);
-  // The square of this response has too few digits near its zero at 0.7.
+  // The series is of the square of the response, which has too few digits near its zero at 0.7.
   const std::size_t far_from_root = by_series([](double e) { return std::abs(0.7 - e); }, true);
   EXPECT_GT(far_from_root, 900u);
   EXPECT_LT(far_from_root, 1000u);
@@ -118,14 +119,14 @@ TEST(SeriesModel, LeavesOtherBlocksToTheModel) {
   EXPECT_EQ(evaluated(*model, {0.0}, FactorIndex(0), {0.5}, 0.0).by_series(), 0u);
 }
 
-/// The largest differences between series and solves.
+/// The largest differences between series and solves (rad, m), and the number of samples evaluated by series.
 struct Differences {
   double angle = 0.0;
   double length = 0.0;
   std::size_t by_series = 0;
 };
 
-/// Compares samples of all errors at one pose, at errors of this size (mm, deg).
+/// Compares series and solves for each error at one pose. size: standard deviation of the errors (mm or deg).
 void compare(const std::shared_ptr<const Model>& solved, const std::vector<double>& pose, double size,
              std::size_t samples, Differences& most) {
   const auto model = with_series(solved);
@@ -155,7 +156,7 @@ TEST(SeriesModel, IsAsPreciseAsSolves) {
     for (const double z : {-0.2, -0.22, -0.25, -0.28}) compare(solved, {z, 6.0 * z + 1.4, 0.3}, size, 36, most);
     EXPECT_LE(most.angle, 1e-13) << size;
     EXPECT_LE(most.length, 1e-14) << size;
-    EXPECT_GT(most.by_series, 9000u) << size;  // of 10 224
+    EXPECT_GT(most.by_series, 9000u) << size;  // of 10 224 samples
   }
 }
 

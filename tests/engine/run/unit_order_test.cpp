@@ -16,7 +16,8 @@
 namespace poesy {
 namespace {
 
-/// The content hash of a study whose units were solved in this order by one evaluator, and merged in the plan's.
+/// The content hash of a study's result. One evaluator solves the units in this order; they are merged in the order of
+/// the plan.
 std::string hash_of(const Study& study, const Model& model, const std::vector<std::size_t>& order) {
   const SelectedPoses poses = select_poses(study.poses, model);
   const Plan plan(study, poses.poses);
@@ -30,7 +31,7 @@ std::string hash_of(const Study& study, const Model& model, const std::vector<st
   }
   SensitivityResult result =
       sensitivity_result(plan, std::move(cells), background_responses(plan, model), response_rounding(model), 0.95);
-  result.index_change = SensitivityResult::Indices(result.global.lengths());  // found by other solves, after these
+  result.index_change = SensitivityResult::Indices(result.global.lengths());  // not computed here
   set_references(study, result);
   const test::TempFolder folder;
   write_result(folder / "r.h5", study, poses, std::move(result), {});

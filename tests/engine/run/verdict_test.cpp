@@ -15,7 +15,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Two responses at two poses, 4 draws at each, one of which was not solved.
+/// A result with two responses at two poses, with four draws at each pose. One draw was not solved.
 MonteCarloResult draws() {
   MonteCarloResult found;
   found.overall_rms = {{2}, {2.0, 0.5}};
@@ -26,7 +26,8 @@ MonteCarloResult draws() {
   return found;
 }
 
-/// The magnitudes of the first response's samples; the second has both signs.
+/// The sketches of the seven solved draws over both poses. Samples of the first response are magnitudes, those of the
+/// second have both signs.
 std::vector<QuantileSketch> overall() {
   std::vector<QuantileSketch> sketches(2);
   sketches[0].add(std::vector{1.0, 1.0, 2.0, 3.0, 1.0, 1.0, 2.0});
@@ -61,7 +62,7 @@ TEST(JudgeDraws, ByTheWorstPoseOfAShare) {
   EXPECT_EQ(verdicts.limits[1].pose, 0u);
 }
 
-/// Of all draws, by magnitude; the one that was not solved is not within.
+/// All eight draws are counted, by magnitude. The draw that was not solved is not within the limit.
 TEST(JudgeDraws, CountsTheDrawsWithinTheLimit) {
   const LimitVerdicts verdicts = judged(Judge::rms, 2.5, 0.375);
   EXPECT_EQ(verdicts.limits[0].tried, 8u);
@@ -77,7 +78,7 @@ TEST(JudgeDraws, RefusesWhatIsNotKnown) {
   EXPECT_FALSE(judged(Judge::share, 1e9, 1.0, found).limits[0].passed);
 }
 
-/// The number of the given rank in the order of how bad numbers are.
+/// value_at_rank() is the value of this rank if values are sorted by how far they are beyond the limit.
 TEST(ValueAtRank, IsTheWorstOfTheShare) {
   QuantileSketch sketch;
   sketch.add(std::vector{-3.0, -1.0, 0.0, 0.5, 2.0, 4.0});
@@ -103,7 +104,7 @@ TEST(JudgeDraws, BetweenTwoEndsByTheWorstPose) {
   EXPECT_FALSE(judged(Judge::share, ValueLimit::between(-1e9, kInfinity), 1.0, found).limits[0].passed);
 }
 
-/// Three poses, two rows; row 1 is the larger one, with both signs.
+/// Solves of two rows at three poses. Row 1 has the larger values, with both signs.
 EvaluationResult evaluation() {
   EvaluationResult result;
   result.response = {{1, 3, 2}, {1.0, 10.0, 2.0, -90.0, 6.0, 20.0}};
@@ -150,7 +151,7 @@ TEST(JudgeRows, ByTwoEndsByAShareOfThePosesAndByTheSpread) {
   EXPECT_FALSE(spread.pose);
 }
 
-/// A row that was not solved at a pose is not within any limit, though its other values are.
+/// A row that was not solved at one pose is within no limit, even if its other values are.
 TEST(JudgeRows, RefusesARowThatWasNotSolvedEverywhere) {
   EvaluationResult some = evaluation();
   some.status(2, 0) = SolveStatus::iteration_cap;  // row 0 at the last pose

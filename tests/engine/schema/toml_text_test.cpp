@@ -11,7 +11,7 @@ namespace {
 
 toml::table parsed(const std::string& text) { return parse_toml(text, "f.toml", "correct it"); }
 
-/// The mistake stands at '^'.
+/// Expects that the text is refused with these words. In `marked`, '^' stands before the mistake.
 void expect_refused(std::string_view marked, const std::vector<std::string>& words) {
   const test::Marked wrong(marked);
   test::expect_input_error([&] { parsed(wrong.text); }, {"f.toml", wrong.line, wrong.column}, words);
@@ -44,7 +44,7 @@ TEST(ParseToml, RefusesLongLinesButNotManyLines) {
   EXPECT_EQ(parsed("a = 1\n#" + std::string(16383, ' ') + std::string(100000, '\n') + "b = 2").size(), 2u);
 }
 
-/// Tables as deep as a line can nest them, once in a header and once in a key.
+/// Tables nested as deeply as one line allows, in a header and again in a key.
 TEST(ParseToml, LooksIntoTheDeepestTables) {
   std::string dots = "a";
   for (int k = 0; k < 8180; ++k) dots += ".a";
@@ -89,7 +89,7 @@ TEST(ParseToml, KeepsOtherReasonsBesideTypographicQuotes) {
   }
 }
 
-/// A quote that is open elsewhere explains nothing.
+/// An open quote elsewhere in the text is not the reason of the mistake.
 TEST(ParseToml, KeepsOtherReasonsBesideOpenQuotes) {
   expect_refused("[a^\nb = 1\nc = \"text\n", {"this is not TOML: parsing table header"});
   expect_refused("a = \"it's\" # don't\n[b^\n", {"this is not TOML: parsing table header"});

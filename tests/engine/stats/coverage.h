@@ -6,7 +6,7 @@
 
 namespace poesy::test {
 
-/// How often 95 % intervals hold the truth. One with NaN at an end holds nothing.
+/// Counts how often 95 % intervals contain the true value. An interval with NaN at its upper end does not contain it.
 class Coverage {
  public:
   void add(const Interval& interval, double truth) {
@@ -16,9 +16,9 @@ class Coverage {
   }
 
   double too_high() const { return too_high_ / all_; }  ///< Share of intervals that lie above the truth.
-  double too_low() const { return too_low_ / all_; }    ///< Below the truth, or with NaN.
+  double too_low() const { return too_low_ / all_; }    ///< Share of intervals that lie below the truth, or end in NaN.
   double share() const { return 1.0 - too_high() - too_low(); }
-  /// Distance of the share from 0.95, in its standard errors.
+  /// Distance of share() from 0.95 in standard errors.
   double z() const { return (share() - 0.95) / std::sqrt(0.95 * 0.05 / all_); }
 
  private:

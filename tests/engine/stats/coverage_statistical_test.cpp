@@ -9,16 +9,17 @@
 
 #include "engine/stats/indices.h"
 
-// How often a 95 % interval holds the truth, in repeated experiments with known truth and fixed seeds. A correct
-// interval fails a two-sided check with probability alpha = 0.001 (|z| > 3.291), a one-sided one likewise (z < -3.090),
-// where z is the distance of the observed share from 0.95 in standard errors of that share.
+// Coverage of 95 % intervals, in repeated experiments with known truth and fixed seeds. z is the distance of the
+// observed coverage from 0.95 in its standard errors. A correct interval fails a two-sided check (|z| > 3.291) or a
+// one-sided check (z < -3.090) with probability alpha = 0.001.
 
 namespace poesy {
 namespace {
 
 constexpr double kLevel = 0.95;
 
-/// Response to a normal error that folds it: |scale e|, as a deformation does. Standard deviation scale sqrt(1 - 2/pi).
+/// A deformation responds to a standard normal error e with |scale e|, a folded normal. Its standard deviation is scale
+/// sqrt(1 - 2/pi).
 const double kFoldedDeviation = std::sqrt(1.0 - 2.0 / std::numbers::pi);
 
 class Experiment {
@@ -42,7 +43,7 @@ class Experiment {
   boost::random::normal_distribution<double> normal_;
 };
 
-/// Distance of the share of hits from the level, in its standard errors.
+/// Distance of the share of hits from the level, in standard errors.
 double z_of(int hits, int repetitions) {
   const double share = static_cast<double>(hits) / repetitions;
   return (share - kLevel) / std::sqrt(kLevel * (1.0 - kLevel) / repetitions);
@@ -56,7 +57,8 @@ double mean_plus_spread(const std::vector<double>& scales) {
   return over_poses.mean() + over_poses.standard_deviation();
 }
 
-/// How often the interval of a local index holds it, of a response that is a function of a normal error.
+/// The share of intervals of a local index that contain its true value. response: a function of a standard normal
+/// error; deviation: its true standard deviation.
 double local_coverage(double (*response)(double), double deviation, int samples, std::uint64_t seed) {
   constexpr int kRepetitions = 4000;
   boost::random::mt19937_64 engine(seed);
@@ -70,7 +72,7 @@ double local_coverage(double (*response)(double), double deviation, int samples,
   return static_cast<double>(hits) / kRepetitions;
 }
 
-/// z of the coverage of the global interval over poses whose indices are known.
+/// z of the coverage of the global index's interval. scales: factor of the response at each pose.
 double z_of_global_coverage(const std::vector<double>& scales, int samples, int repetitions, std::uint64_t seed) {
   Experiment experiment(seed);
   const double truth = mean_plus_spread(scales);
@@ -83,8 +85,8 @@ double z_of_global_coverage(const std::vector<double>& scales, int samples, int 
   return z;
 }
 
-/// What tables say of few samples (kinds/sensitivity/ranking.cpp), within 3.291 standard errors of a share of 4000 and
-/// half a percent of rounding.
+/// The coverage that tables state for few samples (kinds/sensitivity/ranking.cpp). Allowed are 3.291 standard errors of
+/// 4000 repetitions, and half a percent because the stated numbers are rounded.
 TEST(LocalIndexInterval, CoversWithFewSamplesAsStated) {
   const auto expect = [](double share, double stated) {
     EXPECT_NEAR(share, stated, 0.005 + 3.291 * std::sqrt(stated * (1.0 - stated) / 4000.0));
@@ -100,7 +102,7 @@ TEST(LocalIndexInterval, CoversWithFewSamplesAsStated) {
   expect(local_coverage(square, std::numbers::sqrt2, 1000, 37), 0.94);
 }
 
-/// Evenly spaced from low to high.
+/// Scales that are evenly spaced from low to high.
 std::vector<double> scales_between(double low, double high, std::size_t count) {
   std::vector<double> scales(count);
   for (std::size_t k = 0; k < count; ++k) {
@@ -130,7 +132,8 @@ TEST(LocalIndexWithError, StandardErrorIsThatOfRepetitions) {
     values.add(index.value);
     errors.add(index.standard_error);
   }
-  // The deviation of a near-normal sample has the relative standard error sqrt(1 / (2 n)); 3.291 at alpha = 0.001.
+  // The standard deviation of n nearly normal values has the relative standard error sqrt(1 / (2 n)). 3.291 of them are
+  // alpha = 0.001.
   EXPECT_NEAR(errors.mean() / values.standard_deviation(), 1.0, 3.291 * std::sqrt(0.5 / kRepetitions));
 }
 
@@ -152,7 +155,7 @@ TEST(GlobalIndexInterval, CoversWhereOnePoseMakesTheSpread) {
   EXPECT_LE(std::abs(z_of_global_coverage(scales, 1000, 4000, 24)), 3.291);
 }
 
-// Where the spread is as small as its noise, the interval may cover more than its level, never less.
+// If the spread over the poses is as small as its noise, the coverage may be above its level, but not below.
 
 TEST(GlobalIndexInterval, CoversWhereSpreadIsLikeNoise) {
   EXPECT_GE(z_of_global_coverage(scales_between(0.97, 1.03, 20), 1000, 4000, 31), -3.090);
@@ -171,7 +174,7 @@ TEST(GlobalIndexInterval, CoversWithoutSpreadAt158Poses) {
 }
 
 TEST(GlobalIndexInterval, ReachesPlainEstimateWithoutSpread) {
-  // Why the interval cannot simply be put about the plain estimate: that takes noise for spread.
+  // The plain estimate counts noise as spread, so an interval centred on it would miss the truth.
   Experiment experiment(34);
   const std::vector<double> scales(158, 1.0);
   const Estimate index = global_index(experiment.folded_poses(scales, 1000), kLevel);
@@ -180,12 +183,12 @@ TEST(GlobalIndexInterval, ReachesPlainEstimateWithoutSpread) {
   EXPECT_TRUE(holds(index.interval, mean_plus_spread(scales)));
 }
 
-/// How far both estimators are from the truth on average.
+/// Differences of both estimators of the global index from the truth, over the repetitions.
 struct Bias {
   Moments published;
   Moments corrected;
 
-  /// In standard errors of the average.
+  /// The mean difference in its standard errors.
   static double z(const Moments& errors) {
     return errors.mean() * std::sqrt(static_cast<double>(errors.count())) / errors.standard_deviation();
   }
@@ -213,7 +216,7 @@ TEST(CorrectedGlobalIndex, HasNoBiasWherePosesDifferClearly) {
 TEST(CorrectedGlobalIndex, IsNearerToTheTruth) {
   for (const double half : {0.0, 0.03, 0.1}) {
     const Bias found = bias(scales_between(1.0 - half, 1.0 + half, 20), 200, 2000, 51);
-    // What is left cannot be taken off: a spread is not negative, so its noise does not average out near zero.
+    // Some bias remains: the estimate of a spread cannot be negative, so its noise does not average out near zero.
     EXPECT_GT(Bias::z(found.published), 3.090) << half;
     const double error = found.corrected.standard_deviation() / std::sqrt(2000.0);
     EXPECT_LT(std::abs(found.corrected.mean()) + 3.090 * error, 0.5 * found.published.mean()) << half;

@@ -12,12 +12,11 @@
 #include "tests/engine/stats/effect_functions.h"
 #include "tests/engine/stats/yield_cases.h"
 
-// Repeated experiments: how often 95 % intervals of first-order indices, main effects and gradients of a yield hold the
-// truth.
+// Repeated experiments: the coverage of 95 % intervals of first-order indices, main effects and gradients of a yield.
 
 namespace poesy::test {
 
-/// The intervals of all first-order indices of a function.
+/// For each error, the coverage of the interval of its first-order index.
 inline std::vector<Coverage> index_coverage(const EffectFunction& function, std::size_t samples, int repetitions,
                                             std::uint64_t seed) {
   EffectExperiment experiment(seed);
@@ -34,7 +33,7 @@ inline std::vector<Coverage> index_coverage(const EffectFunction& function, std:
   return coverage;
 }
 
-/// The intervals of all bins of all curves of a function together, one for each error.
+/// For each error, the coverage of the intervals in all bins of its main-effect curve.
 inline std::vector<Coverage> curve_coverage(const EffectFunction& function, std::size_t samples, int repetitions,
                                             std::uint64_t seed) {
   EffectExperiment experiment(seed);
@@ -51,7 +50,7 @@ inline std::vector<Coverage> curve_coverage(const EffectFunction& function, std:
   return coverage;
 }
 
-/// Four poses at which two errors act in different directions, and at one of them by the magnitude.
+/// Responses to two errors at four poses: linear with different shares at three poses, folded at the fourth.
 struct FourPoses {
   std::vector<EffectFunction> functions{linear({.8, .2}), linear({.5, .5}), linear({.2, .8}), folded()};
   double aggregated() const {
@@ -80,7 +79,7 @@ inline Coverage aggregated_coverage(Dependence dependence, std::size_t samples, 
   return coverage;
 }
 
-/// The intervals of all gradients of a yield.
+/// The coverage of the intervals of a yield's derivatives by all errors together.
 inline Coverage gradient_coverage(const YieldCase& yield, std::size_t machines, int repetitions, std::uint64_t seed) {
   boost::random::mt19937_64 engine(seed);
   Coverage coverage;
@@ -91,7 +90,7 @@ inline Coverage gradient_coverage(const YieldCase& yield, std::size_t machines, 
   return coverage;
 }
 
-/// Three errors of the same size.
+/// slope x standard deviation of three errors.
 inline constexpr std::array kThreeErrors{0.1, 0.1, 0.1};
 
 }  // namespace poesy::test

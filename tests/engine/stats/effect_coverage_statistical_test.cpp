@@ -63,13 +63,13 @@ TEST(FirstOrderIndexInterval, CoversTheAggregated) {
 }
 
 TEST(EffectCurve, HoldsTheMeansOfBins) {
-  // 32 bins of each repetition are as good as independent.
+  // The 32 bins of a repetition count as independent.
   for (const std::size_t samples : {512U, 4096U}) {
     for (const Coverage& coverage : curve_coverage(test::linear({.8, .2}), samples, kRepetitions, 99)) {
       EXPECT_LE(std::abs(coverage.z()), 3.291) << samples;
     }
   }
-  EXPECT_NEAR(curve_coverage(test::folded(), 256, kRepetitions, 100)[1].share(), 0.928, 0.01);  // as stated
+  EXPECT_NEAR(curve_coverage(test::folded(), 256, kRepetitions, 100)[1].share(), 0.928, 0.01);  // the stated coverage
 }
 
 TEST(YieldGradientInterval, CoversWithNineRejectsOrMore) {

@@ -13,23 +13,23 @@
 #include "engine/random/stream.h"
 #include "engine/stats/main_effects.h"
 
-// Functions of independent errors whose first-order indices and main effects are known, and experiments with them.
+// Functions of independent errors with known first-order indices and main effects, and experiments with them.
 
 namespace poesy::test {
 
-/// A function of independent errors of one distribution, with mean zero where it says so.
+/// A function of independent errors that all have the same distribution.
 struct EffectFunction {
   std::string name;
   Distribution distribution;
-  std::function<double(std::span<const double>)> value;  ///< of the errors [P]
-  std::vector<double> first_order;                       ///< [P] S1
-  /// E[y | error p has this value].
+  std::function<double(std::span<const double>)> value;  ///< argument: [errors]
+  std::vector<double> first_order;                       ///< [errors] indices S1
+  /// The main effect E[y | error p has this value], as a function of p and the value.
   std::function<double(std::size_t, double)> main_effect;
 
   std::size_t errors() const { return first_order.size(); }
 };
 
-/// sum of sqrt(S_p) z_p, normal.
+/// y = sum of sqrt(shares_p) z_p with standard normal errors z. The shares are the indices S1.
 inline EffectFunction linear(std::vector<double> shares) {
   const auto value = [shares](std::span<const double> z) {
     double sum = 0.0;
@@ -40,7 +40,7 @@ inline EffectFunction linear(std::vector<double> shares) {
   return {"linear", Distribution::normal(1.0), value, shares, effect};
 }
 
-/// sin x1 + 7 sin^2 x2 + 0.1 x3^4 sin x1, uniform on +-pi.
+/// y = sin x1 + 7 sin^2 x2 + 0.1 x3^4 sin x1 with errors that are uniform between -pi and pi.
 inline EffectFunction ishigami() {
   const auto value = [](std::span<const double> x) {
     const double square = x[2] * x[2];
@@ -54,7 +54,7 @@ inline EffectFunction ishigami() {
   return {"Ishigami", Distribution::uniform(std::numbers::pi), value, {.31390519114781, .44241114479004, 0.0}, effect};
 }
 
-/// |sqrt(.8) z1 + sqrt(.2) z2|, normal.
+/// y = |sqrt(.8) z1 + sqrt(.2) z2| with standard normal errors z.
 inline EffectFunction folded() {
   const auto value = [](std::span<const double> z) { return std::abs(std::sqrt(0.8) * z[0] + std::sqrt(0.2) * z[1]); };
   const auto effect = [](std::size_t p, double z) {
@@ -66,7 +66,7 @@ inline EffectFunction folded() {
   return {"folded", Distribution::normal(1.0), value, {.59887592, .03515699}, effect};
 }
 
-/// exp(size sum of sqrt(shares_p) z_p), normal; the shares add up to 1.
+/// y = exp(size x sum of sqrt(shares_p) z_p) with standard normal errors z. The shares add up to 1.
 inline EffectFunction exponential(double size, std::vector<double> shares) {
   const double square = size * size;
   std::vector<double> indices;
@@ -82,19 +82,20 @@ inline EffectFunction exponential(double size, std::vector<double> shares) {
   return {"exp(" + std::to_string(size).substr(0, 3) + " z)", Distribution::normal(1.0), value, indices, effect};
 }
 
-/// How the errors of a function lie in their bins.
+/// How the values of an error with this distribution scatter within the bins.
 inline BinSpread spread_of(const Distribution& distribution) {
   std::vector<double> values = bin_spread_grid();
   distribution.transform(values);
   return bin_spread(values);
 }
 
-/// Draws samples of functions, all with the same errors where these have the same distribution.
+/// Draws random samples of the errors and evaluates functions at them.
 class EffectExperiment {
  public:
   explicit EffectExperiment(std::uint64_t seed) : engine_(seed) {}
 
-  /// So many samples of some functions of as many errors of one distribution.
+  /// Sums over `samples` samples. All functions have the same number of errors and the same distribution, and are
+  /// evaluated at the same samples.
   MainEffectSums sums(std::span<const EffectFunction> functions, std::size_t samples) {
     const std::size_t errors = functions.front().errors();
     MainEffectSums sums(errors, functions.size());
@@ -123,7 +124,7 @@ class EffectExperiment {
   boost::random::mt19937_64 engine_;
 };
 
-/// Means of a function's main effect in the bins of one of its errors, exact to about 1e-6 of its range.
+/// The mean of a function's main effect in each bin of one error, exact to about 1e-6 of the effect's range.
 inline std::array<double, kEffectBins> bin_means(const EffectFunction& function, std::size_t error,
                                                  std::size_t grid = 4096) {
   std::array<double, kEffectBins> means{};

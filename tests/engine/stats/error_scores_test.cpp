@@ -48,7 +48,7 @@ TEST(PolynomialScore, OfALowerDegreeIsItsBeginning) {
 }
 
 TEST(PolynomialScore, OfANormalIsTheExactOne) {
-  WeightedPoints points;  // the trapezoidal rule, whose error is beyond double precision
+  WeightedPoints points;  // the trapezoidal rule, exact to double precision here
   for (int k = -240; k <= 240; ++k) {
     const double z = 0.05 * k;
     points.points.push_back(3.0 * z);
@@ -59,7 +59,8 @@ TEST(PolynomialScore, OfANormalIsTheExactOne) {
   for (const double z : {-4.0, -1.0, 0.0, 0.5, 3.0}) EXPECT_NEAR(score(3.0 * z), z * z - 1.0, 1e-9) << z;
 }
 
-/// E[S q] = E[q'(e) (e - c)] for q = ((e - c) / t)^k, and with the growth score E[q(c + g (e - c))] - E[q].
+/// Expects the defining equations of the score S for the powers q = ((e - c) / t)^k up to `degree`, with the mean c and
+/// the standard deviation t: E[S q] = E[q'(e) (e - c)], and for the growth score E[q(c + g (e - c))] - E[q].
 void expect_score(const WeightedPoints& points, int degree) {
   const PolynomialScore score(points.points, points.weights);
   const double centre = mean_of(points, [](double e) { return e; });
@@ -92,8 +93,8 @@ TEST(PolynomialScore, OfThreePointsIsAParabola) {
   EXPECT_NEAR(score(3.0) - 3.0 * score(1.0) + 3.0 * score(-1.0) - score(-3.0), 0.0, 1e-12);
 }
 
-/// theory.md has these: what the gradient by one uniform error lacks where it alone makes the rejects, and where the
-/// other errors, normal with this standard deviation, make a part of them.
+/// The relative errors of the gradient by a uniform error that theory.md states. others: standard deviation of the
+/// other, normal errors; the smaller it is, the more of the rejects the uniform error causes alone.
 TEST(PolynomialScore, LeavesOutWhatIsStated) {
   const Distribution uniform = Distribution::uniform(1.0);
   const WeightedPoints points = weighted_points(uniform);
@@ -122,17 +123,18 @@ TEST(PolynomialScore, LeavesOutWhatIsStated) {
 
 TEST(NormalScore, OfACutOffNormalHasTheEnds) {
   EXPECT_EQ((NormalScore{2.0, std::numeric_limits<double>::infinity()}.ends()), 0.0);
-  // d ln (1 / (2 Phi(w/t) - 1)) / d ln t
+  // ends() is the derivative by ln t of -ln(2 Phi(w / t) - 1), with the half-width w = 3 and t = 2.
   const double slope = test::slope_at(2.0, [](double t) { return -std::log(std::erf(3.0 / t / std::numbers::sqrt2)); });
   EXPECT_NEAR((NormalScore{2.0, 3.0}.ends()), 2.0 * slope, 1e-9);
 }
 
 TEST(ScoreMoments, AreThoseOfTheScores) {
-  // of one normal in a block: z^2 - 1
+  // The score of a single normal error in a block is z^2 - 1.
   const ScoreMoments alone = score_moments({{BlockScore{2.0}}, {{{0}, {1.0}}}}, 0);
   EXPECT_DOUBLE_EQ(alone.square, 2.0);
   EXPECT_DOUBLE_EQ(alone.cube, 8.0);
-  // of two with correlation 0.6, (R^-1)_ii = 1 / 0.64, by the trapezoidal rule over independent normals
+  // Two errors with the correlation 0.6, so that (R^-1)_ii = 1 / 0.64. The moments are integrated by the trapezoidal
+  // rule over independent normals.
   const ErrorScores two{{ErrorScore(), BlockScore{1.0}, BlockScore{1.0}},
                         {{{2, 1}, lower_triangle(std::array{1.0, 0.6, 0.6, 1.0})}}};
   ScoreMoments sums{0.0, 0.0};

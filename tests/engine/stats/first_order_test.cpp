@@ -26,7 +26,8 @@ double truth_of_bins(const EffectFunction& function, std::size_t error, std::siz
   return of_bins.variance() * static_cast<double>(bins - 1) / static_cast<double>(bins);
 }
 
-/// What infinitely many samples of one error alone would give: its main effect, with a variance around it.
+/// The binned variance for practically infinitely many samples: the main effect of `error`, with equal variance in each
+/// bin. total: variance of the function.
 BinnedVariance without_noise(const EffectFunction& function, std::size_t error, double total, const BinSpread& spread) {
   constexpr double kSamples = 1e14;
   const std::array<double, kEffectBins> means = test::bin_means(function, error);
@@ -36,7 +37,7 @@ BinnedVariance without_noise(const EffectFunction& function, std::size_t error, 
     sums[b] = {kSamples, kSamples * means[b], kSamples * (means[b] * means[b] + within)};
   }
   Moments all;
-  for (int k = 0; k < 1000; ++k) all.add(k);  // enough for 32 bins; tails do not matter here
+  for (int k = 0; k < 1000; ++k) all.add(k);  // enough for 32 bins; the values do not matter
   return binned_variance(sums, all, spread);
 }
 
@@ -70,7 +71,8 @@ TEST(BinnedVariance, OfLinesHasTheBiasThatItStates) {
 
 TEST(BinSpread, IsThatOfTheDistribution) {
   const BinSpread normal = test::spread_of(Distribution::normal(2.0));
-  // E[z | z > q] = 32 phi(q), E[z^2 | z > q] = 1 + 32 q phi(q), q the quantile of 31/32.
+  // E[z | z > q] = 32 phi(q) and E[z^2 | z > q] = 1 + 32 q phi(q), with the standard normal density phi and its
+  // quantile q for 31/32.
   const double q = normal_quantile(1.0, 31.0 / 32.0);
   const double mean = 32.0 * std::exp(-0.5 * q * q) / std::sqrt(2.0 * std::numbers::pi);
   EXPECT_NEAR(normal.mean[31], 2.0 * mean, 1e-4);
@@ -86,7 +88,7 @@ TEST(BinSpread, IsThatOfTheDistribution) {
   }
 }
 
-/// Mean of an estimate over repetitions, in standard errors from the truth.
+/// Difference of an estimate's mean over repetitions from the truth, in standard errors.
 template <class Value>
 double z_of_mean(const Value& value, double truth, int repetitions) {
   Moments values;
@@ -96,7 +98,7 @@ double z_of_mean(const Value& value, double truth, int repetitions) {
 
 TEST(BinnedVariance, HasNoBiasButThatOfItsBins) {
   const EffectFunction ishigami = test::ishigami();
-  // 32 bins for 1024 samples, 16 for 256, 8 for 128.
+  // The number of bins is 32 for 1024 samples, 16 for 256 and 8 for 128.
   const std::array<std::pair<std::size_t, std::array<double, 2>>, 3> cases{
       {{1024, {.31289798, .43675484}}, {256, {.30989186, .42013185}}, {128, {.29809730, .35860497}}}};
   for (const auto& [samples, expected] : cases) {

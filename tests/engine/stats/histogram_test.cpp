@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kBins = 128;
 
-/// Quantiles of a normal distribution at even steps: its shape without noise.
+/// Quantiles of a normal distribution at equal steps of probability: values without random noise.
 std::vector<double> normal_values(double mean, double sigma, int count) {
   std::vector<double> values;
   for (int k = 0; k < count; ++k) values.push_back(mean + sigma * normal_quantile(1.0, (k + 0.5) / count));
@@ -50,7 +50,7 @@ TEST(Histogram, CountsEveryValueBetweenTheExtremes) {
   }
 }
 
-/// At every edge the number of values below is that of the values themselves.
+/// At every edge, the counts of the bins below add up to the number of values below the edge.
 TEST(Histogram, IsExactAtItsEdges) {
   for (const std::vector<double>& values : examples()) {
     const Histogram found = histogram_of(values);
@@ -78,7 +78,7 @@ TEST(Histogram, HasTheShapeOfTheDistribution) {
   }
 }
 
-/// One value a million standard deviations away does not squeeze the rest into one bin.
+/// One value that is a million standard deviations away does not force all other values into one bin.
 TEST(Histogram, IsNotRuledByAnOutlier) {
   const Histogram found = histogram_of(examples()[3]);
   EXPECT_GT(std::ranges::count_if(found.counts, [](std::uint64_t count) { return count > 0; }), 100);

@@ -21,7 +21,7 @@ Moments skewed_response(double scale, std::size_t count) {
   return moments;
 }
 
-/// Indices that differ much, with standard errors that differ too.
+/// Local indices that differ strongly between the poses, as do their standard errors.
 std::vector<LocalIndex> different_poses(std::size_t count, double relative_error) {
   std::mt19937_64 engine(9);
   std::uniform_real_distribution<double> draw(0.2, 1.0);
@@ -68,7 +68,8 @@ TEST(LocalIndexInterval, AgreesWithTheStandardErrorOfMany) {
 }
 
 TEST(GlobalIndexInterval, TendsToErrorPropagationForSmallNoise) {
-  // d(mean + spread) / d(x_i) = 1 / M + (x_i - mean) / ((M - 1) spread), independent errors.
+  // Error propagation for M poses: d(mean + spread) / d(x_i) = 1 / M + (x_i - mean) / ((M - 1) spread). The errors of
+  // the x_i are independent.
   for (const std::size_t count : {std::size_t{2}, std::size_t{3}, std::size_t{20}, std::size_t{158}}) {
     const std::vector<LocalIndex> poses = different_poses(count, 1e-6);
     Moments over_poses;
@@ -131,7 +132,7 @@ TEST(GlobalIndexInterval, IsOrderedAndNotNegativeInAnyNoise) {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Lists of poses at the edges of what can happen, and a hundred random ones.
+/// Extreme lists of local indices, and a hundred random ones.
 std::vector<std::vector<LocalIndex>> lists_of_poses() {
   std::vector<std::vector<LocalIndex>> lists{{{0.7, 0.1}},
                                              {{0.7, 0.0}},
@@ -178,7 +179,8 @@ TEST(CorrectedGlobalIndex, HasThePublishedIntervalUnextended) {
 TEST(CorrectedGlobalIndex, IsMeanPlusSpreadWithoutNoise) {
   const std::vector<LocalIndex> exact{{0.2, 0.0}, {0.5, 0.0}, {1.1, 0.0}};
   EXPECT_NEAR(corrected_global_index(exact, 0.95).value, 0.6 + std::sqrt((0.16 + 0.01 + 0.25) / 2.0), 1e-15);
-  // x = 1.005, 2.0025: mean 1.50375; variance over poses 0.9975^2 / 2, of which 0.01 is noise.
+  // Without the bias of a standard deviation the indices are 1.005 and 2.0025. Their mean is 1.50375 and their variance
+  // 0.9975^2 / 2, of which 0.01 is noise.
   const std::vector<LocalIndex> noisy{{1.0, 0.1}, {2.0, 0.1}};
   EXPECT_NEAR(corrected_global_index(noisy, 0.95).value, 1.50375 + std::sqrt(0.9975 * 0.9975 / 2.0 - 0.01), 1e-14);
 }

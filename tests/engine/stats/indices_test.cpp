@@ -19,7 +19,7 @@ Moments moments_of(const std::vector<double>& values) {
   return moments;
 }
 
-/// n / 2 values at -1 and as many at +1: variance n / (n - 1), kurtosis 1.
+/// Moments of n values, half of them -1 and half +1: the variance is n / (n - 1), the kurtosis 1.
 Moments two_points(std::size_t n) {
   Moments moments;
   for (std::size_t k = 0; k < n; ++k) moments.add(k % 2 == 0 ? -1.0 : 1.0);
@@ -36,7 +36,8 @@ TEST(LocalIndex, IsTheRatioOfStandardDeviations) {
 }
 
 TEST(LocalIndex, IntervalIsBonettsByHand) {
-  // ln s^2 +- z c sqrt((1 - 97/100) / 99) about ln(c s^2), c = 100 / (100 - z), s^2 = 100 / 99.
+  // The interval of ln(variance) is ln(c s^2) +- z c sqrt((1 - 97/100) / 99), with c = 100 / (100 - z) and s^2 = 100 /
+  // 99.
   const Estimate index = local_index(two_points(100), 2.0, 0.95);
   const double c = 100.0 / (100.0 - kZ);
   const double half = kZ * c * std::sqrt((1.0 - 0.97) / 99.0);
@@ -63,7 +64,7 @@ TEST(LocalIndex, TooFewSamplesGiveNoInterval) {
 TEST(LocalIndex, StandardErrorIsThatOfTheLogarithmTimesTheIndex) {
   const LocalIndex index = local_index_with_error(two_points(100), 2.0);
   EXPECT_DOUBLE_EQ(index.value, std::sqrt(100.0 / 99.0) / 2.0);
-  // 1 - 0.97 loses two digits.
+  // The difference 1 - 0.97 loses two digits.
   EXPECT_NEAR(index.standard_error, 0.5 * index.value * std::sqrt(0.03 / 99.0), 1e-13 * index.standard_error);
 }
 
@@ -89,7 +90,8 @@ TEST(GlobalIndex, SinglePoseIsItsOwnMean) {
   const std::vector<LocalIndex> poses{{2.0, 0.1}};
   const Estimate index = global_index(poses, 0.95);
   EXPECT_EQ(index.value, 2.0);
-  // Centred on the index less the bias of a standard deviation, v / (2 x) = 0.0025.
+  // The interval is centred on the index corrected for the bias of a standard deviation, v / (2 x) = 0.0025, with v =
+  // 0.1^2 and x = 2.
   EXPECT_NEAR(index.interval.low, 2.0025 - kZ * 0.1, 1e-14);
   EXPECT_NEAR(index.interval.high, 2.0025 + kZ * 0.1, 1e-14);
 }
@@ -103,7 +105,8 @@ TEST(GlobalIndex, AllZeroIsCertain) {
 }
 
 TEST(GlobalIndex, EqualIndicesWithNoiseAreTheMeanFromBelow) {
-  // Seen spread 0: the lower limit is that of the mean, the upper one allows for the spread noise may have hidden.
+  // The observed spread is 0. The lower limit is that of the mean. The upper limit includes a spread that noise may
+  // have hidden.
   const std::vector<LocalIndex> poses(4, {1.0, 0.01});
   const Interval interval = global_index(poses, 0.95).interval;
   const double mean = 1.0 + 0.5e-4;
@@ -113,8 +116,8 @@ TEST(GlobalIndex, EqualIndicesWithNoiseAreTheMeanFromBelow) {
 }
 
 TEST(GlobalIndex, SpreadThatNoiseCouldMakeLeavesTheLowerLimitOfTheMean) {
-  // Three poses with the standard error e: noise alone shows (spread / e)^2 ~ chi-square of 2 degrees of freedom over
-  // 2, with its 0.975 quantile at 3.689.
+  // Three poses with the standard error e. With noise alone, (spread / e)^2 is distributed like chi-square with 2
+  // degrees of freedom, divided by 2; its 0.975 quantile is 3.689.
   constexpr double kError = 1e-3;
   const auto lower_limit = [](double seen2_over_noise2) {
     const double step = kError * std::sqrt(seen2_over_noise2);

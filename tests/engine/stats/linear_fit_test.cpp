@@ -17,7 +17,8 @@ constexpr std::size_t kRows = 2;
 constexpr std::array kOffset{4.0, -1e-6};
 constexpr std::array kSlope{1.0, -2.0, 0.5, 0.0, 3e-3, 1e-3};
 
-/// Machines with standard normal errors and y = offset + slope x + rest (x_0^2 - 1).
+/// Random machines with standard normal errors x [errors x machines] and responses y [rows x machines]: y = offset +
+/// slope x + rest (x_0^2 - 1).
 struct Machines {
   std::vector<double> x;
   std::vector<double> y;
@@ -46,7 +47,7 @@ TEST(LinearFit, FindsWhatIsLinearExactly) {
   const LinearFit fit = sums_of(Machines(50, 0.0, 1)).fit().value();
   for (std::size_t k = 0; k < kRows; ++k) {
     EXPECT_NEAR(fit.offset[k], kOffset[k], 1e-13);
-    EXPECT_LT(fit.rest[k], 1e-14 * (k == 0 ? 5.25 : 1e-5));  // of the variance
+    EXPECT_LT(fit.rest[k], 1e-14 * (k == 0 ? 5.25 : 1e-5));  // relative to the variance
   }
   for (std::size_t k = 0; k < kSlope.size(); ++k) EXPECT_NEAR(fit.slope[k], kSlope[k], 1e-13);
 }
@@ -63,8 +64,9 @@ TEST(LinearFit, LeavesOutMachinesThatDoNotCount) {
   EXPECT_NEAR(sums.fit().value().slope[1], kSlope[1], 1e-13);
 }
 
-/// The rest 0.1 (z^2 - 1) has the variance 0.02 (fourth moment 15 - ... of its square: 60 x 1e-4), and the variance of
-/// a slope by an independent error is that over n.
+/// The rest 0.1 (z^2 - 1) has the variance 0.02 and the fourth central moment 60e-4, so the estimate of the variance
+/// has the standard error sqrt(56) 0.01 / sqrt(n). The variance of a slope by an error that is independent of the rest
+/// is 0.02 / n.
 TEST(LinearFit, TellsTheRest) {
   constexpr std::size_t kMachines = 40'000;
   const LinearFit fit = sums_of(Machines(kMachines, 0.1, 3)).fit().value();

@@ -24,7 +24,8 @@ double norm_of(const LinearLimit& limit, std::span<const double> errors) {
   return std::sqrt(sum);
 }
 
-/// Limits on vectors of one and of three components, by four errors, of which the last one does nothing.
+/// Random limits on vectors with one and with three components. They depend on four errors; the last error has no
+/// effect.
 std::vector<LinearLimit> example(boost::random::mt19937_64& engine) {
   const auto number = [&] { return 2.0 * uniform_from_bits(engine()) - 1.0; };
   std::vector<LinearLimit> limits;
@@ -39,8 +40,8 @@ std::vector<LinearLimit> example(boost::random::mt19937_64& engine) {
   return limits;
 }
 
-/// A machine is good where each norm is within its limit, and one error may then be anywhere between the ends of its
-/// range and nowhere beyond.
+/// A machine is good if each norm is within its limit. With the other errors fixed, this must hold exactly while one
+/// error is between the ends of its range.
 TEST(LinearLimits, TellInWhichRangeAMachineIsGood) {
   constexpr std::size_t kErrors = 4;
   constexpr std::size_t kMachines = 300;
@@ -66,7 +67,7 @@ TEST(LinearLimits, TellInWhichRangeAMachineIsGood) {
       const double high = found.high[p * kMachines + b];
       const double own = one[p];
       nowhere += low > high ? 1 : 0;
-      for (int step = -40; step <= 40; ++step) {  // as far as the error may move
+      for (int step = -40; step <= 40; ++step) {  // as far as `reach` allows
         one[p] = own + 0.05 * step;
         if (std::abs(one[p] - low) < 1e-9 || std::abs(one[p] - high) < 1e-9) continue;
         EXPECT_EQ(low < one[p] && one[p] < high, is_good()) << b << ' ' << p << ' ' << step;
@@ -79,7 +80,7 @@ TEST(LinearLimits, TellInWhichRangeAMachineIsGood) {
   EXPECT_GT(nowhere, 0u);
 }
 
-/// The same for limits with two ends, or with one.
+/// The ranges for limits with two ends and with one end.
 TEST(LinearLimits, TellTheRangeBetweenTwoEnds) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const std::vector<LinearLimit> limits{{1, ValueLimit::between(-0.3, 1.1), {0.2}, {1.0, -0.5, 0.0}},
@@ -117,7 +118,7 @@ TEST(LinearLimits, TellTheRangeBetweenTwoEnds) {
 TEST(LinearLimit, KeepsItsNormWithFewerRows) {
   boost::random::mt19937_64 engine(2);
   LinearLimit limit = example(engine)[1];
-  // Two rows more that depend on the three, as components of several pairs of limbs do.
+  // Two more rows that are multiples of the first, as mismatch components of several limb pairs may be.
   for (const double factor : {0.5, -2.0}) {
     limit.offset.push_back(factor * limit.offset[0]);
     for (std::size_t p = 0; p < 4; ++p) limit.slope.push_back(factor * limit.slope[p]);
@@ -148,7 +149,7 @@ TEST(ErrorRange, HoldsTheSharesBelow) {
   EXPECT_NEAR(triangular.length(), 4.0, 1e-6);
   quantiles = ErrorRange::grid();
   Distribution::measured({0, 0, 0, 0, 1, 1, 1, 1, 2}).transform(quantiles);
-  const ErrorRange equal(quantiles, 6.0 / 9.0);  // four of the nine values are in one place
+  const ErrorRange equal(quantiles, 6.0 / 9.0);  // four of the nine values are equal
   EXPECT_NEAR(equal.below(-1e-9), 0.0, 1e-12);
   EXPECT_NEAR(equal.below(1e-9), 4.0 / 9.0, 0.002);
 }

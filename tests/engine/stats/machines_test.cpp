@@ -151,7 +151,7 @@ TEST(MachineBlock, JudgesEveryKindOfLimitAsPlainLoopsDo) {
             found);
 }
 
-/// Outcomes of some machines, cut into blocks of this size.
+/// The counts of 600 random machines, added in blocks of this size.
 MachineCounts in_blocks(std::size_t block_size) {
   constexpr std::size_t kMachines = 600;
   constexpr std::size_t kPoses = 5;
@@ -208,7 +208,7 @@ TEST(StoredMachineCounts, OfNoMachinesAreRefused) {
   const auto refused = [&](auto... counts) { EXPECT_THROW(read_all(counts_of(counts...), read), BytesError); };
   using R = Rejects;
   EXPECT_NO_THROW(read_all(counts_of(2, {5, 3}, {5, 3}, {5, 3}), read));
-  refused(10, R{9, 0}, R{9, 0}, R{9, 0});  // more unsolved than there are
+  refused(10, R{9, 0}, R{9, 0}, R{9, 0});  // more unsolved machines than machines
   refused(2, R{1, 0}, R{1, 0}, R{1, 0});   // unsolved but not rejected
   refused(2, R{5, 2}, R{5, 2}, R{5, 2});   // rejected without a reason
   refused(2, R{5, 3}, R{6, 3}, R{5, 3});   // more by one limit than by all

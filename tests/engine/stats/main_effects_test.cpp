@@ -20,13 +20,14 @@ using test::written;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Samples of R responses to P errors, of which some do not count. Response r is far from zero and varies little.
+/// Random samples of several responses to several errors. Some samples do not count. The responses are far from zero
+/// and vary little.
 struct Samples {
   std::size_t errors;
   std::size_t responses;
   std::size_t count;
-  std::vector<double> uniforms;  ///< [P x B]
-  std::vector<double> values;    ///< [R x B]
+  std::vector<double> uniforms;  ///< [errors x samples]
+  std::vector<double> values;    ///< [responses x samples]
   std::vector<std::uint8_t> counts;
 
   Samples(std::size_t errors_count, std::size_t responses_count, std::size_t samples)
@@ -65,7 +66,7 @@ struct Samples {
 
   void add_to(MainEffectSums& sums) const { sums.add(EffectBins(uniforms, errors), values, counts); }
 
-  /// The samples of a response that count, in one bin of an error.
+  /// The counting samples of a response that lie in one bin of an error.
   std::vector<double> in_bin(std::size_t response, std::size_t error, std::size_t bin) const {
     std::vector<double> found;
     for (std::size_t b = 0; b < count; ++b) {
@@ -83,7 +84,7 @@ MainEffectSums sums_of(const Samples& samples) {
   return sums;
 }
 
-/// Cut into blocks of this size that are merged.
+/// The sums of the samples, cut into blocks of this size whose sums are merged.
 MainEffectSums in_blocks(const Samples& samples, std::size_t size) {
   MainEffectSums sums(samples.errors, samples.responses);
   for (std::size_t first = 0; first < samples.count; first += size) {
@@ -104,7 +105,7 @@ TEST(EffectBins, AreEqualPartsOfTheUniforms) {
 }
 
 TEST(MainEffectSums, AreThoseOfTheBins) {
-  // Numbers of errors and responses that fill the vectors of the sums and that do not.
+  // Some of these numbers of errors and responses fill the SIMD vectors of the sums, others do not.
   for (const auto& [errors, responses] : {std::pair{1U, 1U}, {4U, 4U}, {6U, 5U}, {7U, 3U}}) {
     const Samples samples(errors, responses, 3001);
     const MainEffectSums sums = sums_of(samples);
@@ -172,7 +173,7 @@ TEST(MainEffectSums, SayNothingOfABinWithTooFewSamples) {
   EXPECT_EQ(curve[0].value, 1.0);
   EXPECT_TRUE(std::isnan(curve[0].interval.low));
   EXPECT_EQ(curve[1].value, 3.0);
-  EXPECT_NEAR(curve[1].interval.low, 3.0 - 12.7062047, 1e-6);  // Student's quantile of one degree of freedom
+  EXPECT_NEAR(curve[1].interval.low, 3.0 - 12.7062047, 1e-6);  // Student's t with one degree of freedom
   EXPECT_TRUE(std::isnan(curve[2].value));
   EXPECT_TRUE(std::isnan(curve[2].interval.high));
 }
@@ -189,7 +190,8 @@ TEST(StoredMainEffectSums, GoOnWithTheSameBits) {
   expect_no_harm(written(in_blocks(samples, 300)), read);
 }
 
-/// The state of one response of ten samples, in the first two bins of one error.
+/// The stored state for one response and one error, with ten samples. first, second: numbers of samples in the first
+/// two bins.
 Bytes state(std::uint64_t first, std::uint64_t second, double square, double shift = 0.0) {
   MainEffectSums sums(1, 1);
   ByteWriter to;
@@ -210,7 +212,7 @@ TEST(StoredMainEffectSums, OfNoSamplesAreRefused) {
   EXPECT_THROW(read_all(state(10, 0, 4.0), read), BytesError);   // sums of no sample
   EXPECT_THROW(read_all(state(4, 6, 3.9), read), BytesError);    // squares below those of the mean
   EXPECT_THROW(read_all(state(4, 6, -4.0), read), BytesError);   // negative
-  EXPECT_THROW(read_all(state(4, 6, kNone), read), BytesError);  // no number
+  EXPECT_THROW(read_all(state(4, 6, kNone), read), BytesError);  // NaN
   EXPECT_THROW(read_all(state(4, 6, 4.0, kNone), read), BytesError);
 }
 

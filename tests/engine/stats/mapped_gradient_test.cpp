@@ -18,7 +18,7 @@ std::vector<std::optional<MappedError>> mapped(const std::vector<Distribution>& 
   std::vector<std::optional<MappedError>> list;
   for (const Distribution& error : errors) {
     list.emplace_back();
-    if (error.sigma() > 0.0) continue;  // a normal one
+    if (error.sigma() > 0.0) continue;  // normal errors are not mapped
     std::vector<double> quantiles = ErrorRange::grid();
     error.transform(quantiles);
     const WeightedPoints points = weighted_points(error);
@@ -28,7 +28,8 @@ std::vector<std::optional<MappedError>> mapped(const std::vector<Distribution>& 
   return list;
 }
 
-/// Machines of the sum of some errors, y = sum + bend (sum^2 of the first two), judged by a map without the bend.
+/// The mapped gradient of machines with y = sum of errors + bend (sum of the first two errors)^2. The linear map does
+/// not know the bend.
 MappedGradient gradient_of(const test::YieldCase& yield, double bend, std::size_t machines,
                            boost::random::mt19937_64& engine) {
   const std::size_t errors = yield.errors.size();
@@ -52,8 +53,8 @@ MappedGradient gradient_of(const test::YieldCase& yield, double bend, std::size_
 
 double width(const Estimate& estimate) { return estimate.interval.high - estimate.interval.low; }
 
-/// Each true gradient is in its interval of 99.9 %, which is no wider than twice that of normal errors of the same
-/// sigma, made of as many machines by their exact score.
+/// Expects that each 99.9 % interval contains the true gradient, and that it is at most twice as wide as the interval
+/// for normal errors with the same sigma, from as many machines and their exact score.
 void expect_gradient(const test::YieldCase& yield, std::uint64_t seed) {
   constexpr std::size_t kMachines = 5000;
   boost::random::mt19937_64 engine(seed);
@@ -80,8 +81,9 @@ TEST(MappedGradient, HoldsTheClosedFormsOfEveryShape) {
   expect_gradient(test::measured_case(skewed, 0.3, 0.8), 5);
 }
 
-/// One uniform error that makes all rejects: |e| <= l w is good with the probability l, so dY/dt = -l / t, and with 1.1
-/// times the size l / 1.1 are. Up to the range's end, where polynomials of degree 6 are off by a factor of 12.
+/// One uniform error with the half-width w causes all rejects. |e| <= l w holds with the probability l, so dY/dt = -l /
+/// t, and with 1.1 times the size the yield is l / 1.1. For l = 0.9973 a gradient by polynomials of degree 6 would be
+/// wrong by a factor of 12.
 TEST(MappedGradient, OfTheOnlyErrorIsExact) {
   for (const double l : {0.5, 0.9, 0.9973}) {
     boost::random::mt19937_64 engine(6);
@@ -93,7 +95,7 @@ TEST(MappedGradient, OfTheOnlyErrorIsExact) {
   }
 }
 
-/// The change by a step, against the closed form of the larger error.
+/// The change of the yield for a 10 % larger error, compared with the closed form.
 TEST(MappedGradient, TellsTheStepAndNotTheSlope) {
   const std::vector<double> half_widths{0.2, 0.15, 0.1};
   std::vector<double> sigma;
@@ -112,9 +114,9 @@ TEST(MappedGradient, TellsTheStepAndNotTheSlope) {
   }
 }
 
-/// What is not linear: intervals of 95 % hold the gradient that a hundred times as many machines at sizes which differ
-/// by 5 % give, up to the noise of these. One-sided test with alpha 1e-3 on 1000 repetitions of three errors, which are
-/// correlated within one: z above -3.09 with a third of the count.
+/// Coverage of the 95 % intervals if y is not linear in the errors. The true gradient is a central difference (sizes
+/// +-2 %) of the yields of kMany machines. One-sided test with alpha = 1e-3: z must exceed -3.09. The three gradients
+/// of a repetition are correlated, so only a third of the intervals is counted.
 TEST(MappedGradient, CoversWhatTheMapDoesNotKnow) {
   constexpr double kBend = 0.15;
   constexpr double kLimit = 0.25;

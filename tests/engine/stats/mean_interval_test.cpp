@@ -10,7 +10,8 @@ namespace {
 Moments of(const std::vector<double>& values) { return Moments::of(values); }
 
 TEST(MeanInterval, IsStudents) {
-  // Tables of Student's t: 2.776445 for 4 degrees of freedom and 12.706205 for one, at 95 %; 4.604095 for 4 at 99 %.
+  // Values from tables of Student's t: at 95 %, 2.776445 for 4 degrees of freedom and 12.706205 for one; at 99 %,
+  // 4.604095 for 4.
   const Moments five = of({1.0, 2.0, 3.0, 4.0, 5.0});
   const double error = std::sqrt(2.5 / 5.0);
   const Interval usual = mean_interval(five, 0.95);
@@ -56,7 +57,7 @@ struct ThreeGroups {
 TEST(StratifiedMean, AddsTheVarianceWithinGroups) {
   const Estimate found = stratified_mean(ThreeGroups(), 0.95);
   EXPECT_DOUBLE_EQ(found.value, (4.0 + 18.0 + 100.0) / 38.0);
-  // Satterthwaite: 722^2 / (16^2/3 + 81^2/8 + 625^2/24) = 30.34; Student's t there is 2.0413.
+  // Degrees of freedom by Satterthwaite: 722^2 / (16^2/3 + 81^2/8 + 625^2/24) = 30.34. Student's t for them is 2.0413.
   const double half = 2.0413 * std::sqrt(16.0 + 81.0 + 625.0) / 38.0;
   EXPECT_NEAR(found.interval.high - found.value, half, 1e-4 * half);
   EXPECT_NEAR(found.value - found.interval.low, half, 1e-4 * half);

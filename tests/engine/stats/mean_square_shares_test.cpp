@@ -13,7 +13,7 @@
 namespace poesy {
 namespace {
 
-/// A vector of two components at two poses, without anything that is not linear.
+/// The linear fit of a vector with two components at two poses. The responses are exactly linear.
 LinearFit example() {
   return {.errors = 3,
           .machines = 1000,
@@ -42,7 +42,7 @@ TEST(MeanSquareShares, LeaveOutTheMeanAndStateIt) {
   EXPECT_NEAR(shares.each[0].value, 3.0 / 11.0, 1e-15);
   EXPECT_NEAR(shares.offset, std::sqrt(5.25 / 2.0), 1e-15);
   EXPECT_NEAR(shares.offset_share, 5.25 / (5.25 + 11.0), 1e-15);
-  fit.rest = std::vector(4, 100.0);  // of 1000 machines: the squares of the means are 0.4 too large
+  fit.rest = std::vector(4, 100.0);  // with 1000 machines, the squared means are 0.4 too large
   shares = mean_square_shares(fit, kRows, 2, std::vector<ErrorEffect>(3), 0.95);
   EXPECT_NEAR(shares.offset, std::sqrt(4.85 / 2.0), 1e-15);
 }
@@ -54,7 +54,8 @@ TEST(MeanSquareShares, OfCorrelatedErrorsAreNotKnown) {
   fit.slope[2] = 3.0;
   const MeanSquareShares shares = mean_square_shares(fit, kRows, 2, errors, 0.95);
   EXPECT_TRUE(std::isnan(shares.each[0].value));
-  // 3 + 8 of each, and 2 x 0.5 x the sum of products 1 x 2 of both; 9 of the third one
+  // The mean square is 3 + 8 from the first two errors, 2 x 0.5 x (1 x 2) from their correlation, and 9 from the third
+  // error.
   EXPECT_NEAR(shares.each[2].value, 9.0 / (11.0 + 2.0 + 9.0), 1e-9);
 }
 
@@ -71,8 +72,9 @@ TEST(MeanSquareShares, OfRoundingAreZeroOrNotKnown) {
   EXPECT_TRUE(std::isnan(shares.linear));
 }
 
-/// y = x_0 + 0.3 x_1 + 0.5 (x_2^2 - 1) with normal errors, whose mean square is 1 + 0.09 + 0.5. Intervals of 95 % hold
-/// the shares at least that often: one-sided test with alpha 1e-3 on 2000 repetitions, z > -3.09.
+/// y = x_0 + 0.3 x_1 + 0.5 (x_2^2 - 1) with standard normal errors has the mean square 1 + 0.09 + 0.5. The 95 %
+/// intervals contain the true shares at least that often: one-sided test with alpha = 1e-3 (z > -3.09) over 2000
+/// repetitions.
 TEST(MeanSquareShares, HaveIntervalsThatHoldThem) {
   constexpr std::size_t kMachines = 200;
   constexpr double kAll = 1.59;

@@ -10,7 +10,7 @@
 namespace poesy {
 namespace {
 
-/// A sum whose last bits tell in which order it was made.
+/// A sum whose last bits depend on the order of the merges.
 struct Sum {
   double value = 0.0;
 
@@ -89,7 +89,7 @@ TEST(MergeTree, RefusesWhatDoesNotFollow) {
   EXPECT_THROW(append(other, range(0, 3), 2), BytesError);
 }
 
-/// A state with one node.
+/// Reads a stored state with one node. first, leaves: the first leaf of the node and its number of leaves.
 void read_node(std::uint64_t first, std::uint64_t leaves) {
   ByteWriter to;
   for (const std::uint64_t number : {std::uint64_t{1}, first, leaves}) to.number(number);

@@ -18,7 +18,7 @@ Moments moments_of(std::span<const double> values) {
   return moments;
 }
 
-/// Skewed numbers with an offset, so that every term of the updates counts.
+/// Skewed numbers with an offset, so that every term of the update formulas matters.
 std::vector<double> skewed_values(std::size_t count) {
   std::mt19937_64 engine(3);
   std::lognormal_distribution<double> draw;
@@ -87,7 +87,7 @@ TEST(MomentsMerge, LargeOffsetKeepsTheSpread) {
   for (double& value : values) value += 1e6;
   Moments merged = moments_of(std::span(values).first(700));
   merged.merge(moments_of(std::span(values).subspan(700)));
-  // A mean near 1e6 has a last digit of 1e-10 itself.
+  // A mean near 1e6 has rounding errors of 1e-10.
   expect_same(merged, moments_of(values), 1e-9);
 }
 

@@ -51,7 +51,8 @@ TEST(Moments, EqualValuesHaveExactlyNoSpread) {
 
 TEST(Moments, TwoValuesHaveTheLeastKurtosis) { EXPECT_DOUBLE_EQ(moments_of({-1.0, 5.0}).kurtosis(), 1.0); }
 
-/// 10000 exponential draws against two passes; rounding grows with offset / scale.
+/// Compares the moments of 10000 exponential draws with a two-pass computation. Rounding errors grow with offset /
+/// scale.
 void expect_two_pass_moments(double offset, double scale, double tolerance) {
   std::mt19937_64 engine(7);
   std::exponential_distribution<double> draw;

@@ -5,7 +5,7 @@
 
 namespace poesy::test {
 
-/// The order statistic of the smallest rank k with k / n >= q, by sorting and looking: the oracle for sketches.
+/// The quantile of n values by sorting: the value of the smallest rank k with k / n >= q. Reference for QuantileSketch.
 inline double sorted_quantile(std::vector<double> values, double q) {
   std::ranges::sort(values);
   std::size_t k = 1;

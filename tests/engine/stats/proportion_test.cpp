@@ -17,7 +17,7 @@ double binomial(std::uint64_t k, std::uint64_t n, double p) {
 TEST(Proportion, HasTheReferenceLimits) {
   EXPECT_NEAR(proportion_at_most(200, 100000, 0.95), 0.00224846, 5e-9);
   EXPECT_NEAR(proportion_at_most(0, 1000, 0.95), 0.00299125, 5e-9);
-  const Estimate half = proportion(10, 20, 0.95);  // tables of Clopper and Pearson
+  const Estimate half = proportion(10, 20, 0.95);  // from tables of Clopper and Pearson
   EXPECT_EQ(half.value, 0.5);
   EXPECT_NEAR(half.interval.low, 0.2719578, 5e-8);
   EXPECT_NEAR(half.interval.high, 0.7280422, 5e-8);
@@ -67,7 +67,7 @@ TEST(Proportion, OfNoTrialsIsNotKnown) {
   EXPECT_EQ(share.interval.high, 1.0);
 }
 
-/// The probability that n pairs of trials end so: some gained, some lost, the others alike.
+/// The probability that of n pairs of trials `gained` change to good, `lost` change to bad and the rest do not change.
 double trinomial(std::uint64_t gained, std::uint64_t lost, std::uint64_t n, double p_gained, double p_lost) {
   const double p_of_rest = p_lost / (1.0 - p_gained);
   return binomial(gained, n, p_gained) * binomial(lost, n - gained, p_of_rest);
@@ -93,7 +93,7 @@ TEST(PairedChange, CoversEveryChange) {
       ++cases;
     }
   }
-  EXPECT_NEAR(sum / cases, 0.957, 0.012);  // neither too narrow nor much too wide on average
+  EXPECT_NEAR(sum / cases, 0.957, 0.012);  // on average not too narrow and not much too wide
 }
 
 TEST(PairedChange, IsNarrowWhereTrialsEndAlike) {
@@ -102,7 +102,7 @@ TEST(PairedChange, IsNarrowWhereTrialsEndAlike) {
   EXPECT_LT(same.interval.high, 0.003);
   const Estimate change = paired_change(30, 10, 1000, 0.95);
   EXPECT_EQ(change.value, 0.02);
-  // Two independent shares near one half have an interval of 1.96 sqrt(0.5 / 1000) on either side.
+  // For two independent shares near one half the half-width would be 1.96 sqrt(0.5 / 1000) = 0.044.
   EXPECT_LT(change.interval.high - change.interval.low, 0.03);
   EXPECT_GT(change.interval.low, 0.0);
 }

@@ -10,11 +10,10 @@
 
 #include "engine/stats/buckets.h"
 
-// How often a 95 % interval of a quantile holds the quantile, known in closed form, in repeated experiments with fixed
-// seeds. It must not miss it more often than 5 %; a correct interval fails with probability alpha = 0.001 (z < -3.090,
-// the distance of the observed share from 0.95 in its standard errors). Ranks are whole numbers and ends lie at the
-// outer edges of buckets, so the share may be above 0.95; where neither plays a part it must not be, two-sided (|z| >
-// 3.291).
+// Coverage of the 95 % interval of a quantile that is known in closed form, in repeated experiments with fixed seeds. z
+// is the distance of the observed coverage from 0.95 in its standard errors. A correct interval fails with probability
+// alpha = 0.001 (z < -3.090). Ranks are whole numbers and the ends lie at the outer edges of buckets, so the coverage
+// may be above 0.95. If neither matters, the check is two-sided (|z| > 3.291).
 
 namespace poesy {
 namespace {
@@ -45,7 +44,7 @@ double folded_normal(boost::random::mt19937_64& engine) {
   return std::abs(boost::random::normal_distribution<double>()(engine));
 }
 
-// Quantiles of |N(0, 1)|: those of N(0, 1) for (1 + q) / 2.
+// The quantile q of |N(0, 1)| is the quantile (1 + q) / 2 of N(0, 1).
 TEST(QuantileInterval, CoversTheMedianOfAFoldedNormalOnly) {
   EXPECT_LE(std::abs(z_of_coverage(folded_normal, 0.5, 0.6744897501961, 1000, 21)), 3.291);
 }
@@ -55,12 +54,12 @@ TEST(QuantileInterval, CoversTheHighQuantilesOfAFoldedNormal) {
   EXPECT_GE(z_of_coverage(folded_normal, 0.9973, 2.9999769927034, 3000, 23), -3.090);
 }
 
-/// Without an upper end the interval is one-sided, and misses 2.5 % at the most.
+/// With too few samples the interval has no upper end. Then it misses the quantile in at most 2.5 % of the repetitions.
 TEST(QuantileInterval, CoversWhereItHasNoUpperEnd) {
   EXPECT_GE(z_of_coverage(folded_normal, 0.9973, 2.9999769927034, 500, 24), -3.090);
 }
 
-/// exp(2 N): skewed, of infinite kurtosis as good as.
+/// exp(2 N) with a standard normal N is skewed and has an enormous kurtosis.
 TEST(QuantileInterval, CoversTheQuantilesOfALogNormal) {
   const Draw draw = [](boost::random::mt19937_64& engine) {
     return boost::random::lognormal_distribution<double>(0.0, 2.0)(engine);
@@ -77,13 +76,13 @@ TEST(QuantileInterval, CoversAQuantileBelowZero) {
   EXPECT_GE(z_of_coverage(draw, 0.05, -1.6448536269515, 1000, 27), -3.090);
 }
 
-/// Draws from several distributions in fixed numbers, as at several poses: the interval is wider than need be.
+/// Fixed numbers of draws from two distributions, as at several poses. The interval is then wider than necessary.
 TEST(QuantileInterval, CoversThatOfAMixtureInFixedShares) {
   int drawn = 0;
   const Draw draw = [&drawn](boost::random::mt19937_64& engine) {
     return (drawn++ % 2 == 0 ? 0.0 : 10.0) + boost::random::normal_distribution<double>()(engine);
   };
-  // Half of the mixture lies at either side of 5, a quarter below the mean of the first.
+  // Half of the mixture is below 5, so a quarter is below 0, the mean of the first distribution.
   EXPECT_GE(z_of_coverage(draw, 0.25, 0.0, 1000, 28), -3.090);
 }
 

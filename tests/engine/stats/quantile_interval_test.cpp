@@ -9,7 +9,7 @@
 namespace poesy {
 namespace {
 
-/// P(B <= k) for a binomial B, term by term.
+/// P(B <= k) for a binomial B(n, p), as a sum of its terms.
 double binomial_below(std::uint64_t k, std::uint64_t n, double p) {
   double sum = 0.0;
   for (std::uint64_t j = 0; j <= k; ++j) {
@@ -29,12 +29,12 @@ TEST(QuantileRanks, AreTheInnermostThatHoldTheLevelOnEitherSide) {
         const RankInterval ranks = quantile_ranks(n, q, level);
         ASSERT_LE(ranks.low, n);
         ASSERT_LE(ranks.high, n + 1);
-        // P(B < low) is small enough, and would not be for the next rank.
+        // P(B < low) is small enough, but P(B < low + 1) is not.
         if (ranks.low > 0) {
           EXPECT_LE(binomial_below(ranks.low - 1, n, q), beyond) << n << " " << q;
         }
         EXPECT_GT(binomial_below(ranks.low, n, q), beyond * (1.0 - 1e-9)) << n << " " << q;
-        // P(B >= high) is small enough, and would not be for the rank before.
+        // P(B >= high) is small enough, but P(B >= high - 1) is not.
         EXPECT_GE(binomial_below(ranks.high - 1, n, q), 1.0 - beyond - 1e-12) << n << " " << q;
         if (ranks.high > 1) {
           EXPECT_LT(binomial_below(ranks.high - 2, n, q), 1.0 - beyond + 1e-12) << n << " " << q;
@@ -44,7 +44,7 @@ TEST(QuantileRanks, AreTheInnermostThatHoldTheLevelOnEitherSide) {
   }
 }
 
-/// As the header says: 0.9973^1364 is above 0.025, 0.9973^1365 is not.
+/// 0.9973^1364 is above 0.025, but 0.9973^1365 is not. So 1364 draws are too few for an upper end: its rank is n + 1.
 TEST(QuantileRanks, HaveNoUpperEndWhereDrawsAreTooFew) {
   EXPECT_EQ(quantile_ranks(1364, 0.9973, 0.95).high, 1365u);
   EXPECT_EQ(quantile_ranks(1365, 0.9973, 0.95).high, 1365u);

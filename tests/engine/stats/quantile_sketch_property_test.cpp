@@ -94,7 +94,7 @@ TEST_P(SketchOf, SameBitsWhenMerged) {
       parts.push_back(of(std::span(values).subspan(begin, end - begin)));
       begin = end;
     }
-    while (parts.size() > 1) {  // any two, in any order
+    while (parts.size() > 1) {  // merges any two parts in any order
       std::swap(parts[engine() % parts.size()], parts.back());
       const QuantileSketch last = parts.back();
       parts.pop_back();

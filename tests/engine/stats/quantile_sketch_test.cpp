@@ -42,7 +42,7 @@ TEST(QuantileSketch, IsExactForZeroAndForTheExtremes) {
   EXPECT_EQ(sketch.max(), 7.7);
 }
 
-/// So many copies of each.
+/// `times` copies of each value.
 std::vector<double> repeated(const std::vector<double>& values, std::size_t times) {
   std::vector<double> all;
   for (const double value : values) all.insert(all.end(), times, value);
@@ -51,7 +51,7 @@ std::vector<double> repeated(const std::vector<double>& values, std::size_t time
 
 TEST(QuantileSketch, TellsItsBucketsFromBelow) {
   const std::vector<double> values{-3.3, 0.0, 1.5, 1e6};
-  for (const std::size_t times : {2u, 100u}) {  // kept as they are, and counted
+  for (const std::size_t times : {2u, 100u}) {  // few values are stored, many are counted in buckets
     const std::vector<Bucket> buckets = of(repeated(values, times)).buckets();
     ASSERT_EQ(buckets.size(), values.size());
     for (std::size_t k = 0; k < values.size(); ++k) {
@@ -129,14 +129,14 @@ TEST(QuantileSketch, DoesNotLoseARankToRounding) {
   std::vector<double> values;
   for (int k = 1; k <= 100; ++k) values.push_back(k);
   const QuantileSketch sketch = of(values);
-  // 0.07 * 100 is 7.000000000000001 in doubles, and its ceiling 8.
+  // In doubles 0.07 * 100 is 7.000000000000001, whose ceiling would be rank 8.
   EXPECT_NEAR(sketch.quantile(0.07), 7.0, 7.0 * QuantileSketch::kRelativeError);
   for (int k = 1; k <= 100; ++k) {
     EXPECT_NEAR(sketch.quantile(k / 100.0), k, k * QuantileSketch::kRelativeError) << k;
   }
 }
 
-/// What does not fill more pages than there are has a bucket for each double.
+/// Values that need few pages have a fine bucket each, even if they differ by only 0x1p-44.
 TEST(QuantileSketch, IsExactForAFewNumbersThatComeOften) {
   const std::vector<double> atoms{-1.0 / 3.0, 1.0, 1.0 + 0x1p-44, 1.5, 3.0};
   const QuantileSketch sketch = of(repeated(atoms, 1000));

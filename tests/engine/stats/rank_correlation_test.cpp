@@ -26,7 +26,8 @@ TEST(RankCorrelation, IsOneForWhateverOnlyGrows) {
   EXPECT_DOUBLE_EQ(rank_correlation(x, falls), -1.0);
 }
 
-/// By hand: ranks of x 3.5, 1, 5, 3.5, 6, 2 and of y 2, 5, 3.5, 3.5, 1, 6, both with sum of squares 17 about 3.5.
+/// Computed by hand: x has the ranks 3.5, 1, 5, 3.5, 6, 2 and y has 2, 5, 3.5, 3.5, 1, 6. The squared deviations from
+/// 3.5 add up to 17 for both.
 TEST(RankCorrelation, SharesRanksAmongEqualValues) {
   const std::array x{0.3, -1.2, 2.5, 0.3, 4.0, -0.7};
   const std::array y{1.0, 5.0, 2.0, 2.0, 0.5, 7.0};
@@ -56,11 +57,11 @@ TEST(KendallTau, IsOneWhereAllAgree) {
   EXPECT_EQ(kendall_tau(x, falls), -1.0);
 }
 
-/// By hand: of the ten pairs x orders nine and y seven.
+/// Computed by hand: x orders nine of the ten pairs and y orders seven.
 TEST(KendallTau, LeavesOutWhatIsEqual) {
   const std::array x{5.0, 4.0, 3.0, 0.0, 0.0};
   const std::array y{4.0, 5.0, 1.0, 1.0, 1.0};
-  // Pairs that y orders: 0-1, 0-2, 0-3, 0-4, 1-2, 1-3, 1-4: the first against x, the other six as x does.
+  // y orders the pairs 0-1, 0-2, 0-3, 0-4, 1-2, 1-3 and 1-4: the first unlike x, the other six like x.
   EXPECT_DOUBLE_EQ(kendall_tau(x, y), (6.0 - 1.0) / std::sqrt(9.0 * 7.0));
 }
 

@@ -10,7 +10,7 @@ namespace poesy {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kSolver = 1e-15;  ///< m, as Model::rounding gives it
+constexpr double kSolver = 1e-15;  ///< rounding of the response (m), see Model::rounding
 
 TEST(IndexRounding, IsThatOfSolvesOverTheErrorOrOfDigits) {
   EXPECT_DOUBLE_EQ(index_rounding(kSolver, 1e-7), 1e-8);
@@ -32,7 +32,7 @@ TEST(ToldFromRounding, IsTheIndexOrNothingOrUnknown) {
   EXPECT_EQ(told_from_rounding(0.5, large), 0.5);
   EXPECT_EQ(told_from_rounding(5e-9, large), 0.0);
   EXPECT_TRUE(std::isnan(told_from_rounding(kNaN, large)));
-  const double small = index_rounding(kSolver, 1e-12);  // an index of 1e-3 would be rounding
+  const double small = index_rounding(kSolver, 1e-12);  // the rounding threshold of the index is 1e-3
   EXPECT_EQ(told_from_rounding(0.5, small), 0.5);
   EXPECT_TRUE(std::isnan(told_from_rounding(5e-4, small)));
   EXPECT_TRUE(std::isnan(told_from_rounding(0.0, small)));
@@ -50,7 +50,8 @@ TEST(SizeRounding, IsThatOfSolvesOrOfDigits) {
   EXPECT_EQ(size_rounding(0.0, kNaN, 1e-3), 1e-13);
 }
 
-/// Effects a_p sigma_p of errors that vary together add up as root sum square: where each alone is rounding, all are.
+/// Effects of errors that vary together add up as root sum square. If each effect alone is below its rounding
+/// threshold, the effect of all is below the joint one.
 TEST(JointRounding, IsAboveWhatErrorsWithoutEffectDoTogether) {
   const std::vector<double> sigma{1e-3, 2e-3, 1e-9};
   const double rounding = joint_rounding(kSolver, sigma);

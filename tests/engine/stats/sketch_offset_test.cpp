@@ -9,9 +9,9 @@
 #include "engine/stats/buckets.h"
 #include "engine/stats/quantile_sketch.h"
 
-// Quantiles of distributions that are known in closed form, as far from zero as can be, in terms of their standard
-// deviation. Values are quantiles at even steps, so that nothing is left to chance: between two of them lies less than
-// 1 / (count x density) = 0.0015 standard deviations at the outermost level.
+// Sketches of distributions with quantiles in closed form, also far from zero. Errors are in standard deviations. The
+// values are quantiles at equal steps of probability, so there is no random noise. Two neighbouring values differ by
+// less than 1 / (count x density) = 0.0015 standard deviations at the outermost level.
 
 namespace poesy {
 namespace {
@@ -19,7 +19,7 @@ namespace {
 constexpr int kCount = 200'000;
 constexpr double kStep = 0.0015;
 
-/// Half of a bucket, in standard deviations.
+/// Half the width of a bucket, in standard deviations.
 constexpr double kBound = 0.0025;
 
 const std::vector<double>& levels() {
@@ -41,7 +41,7 @@ QuantileSketch of(const std::vector<double>& values) {
   return sketch;
 }
 
-/// The most that an order statistic may be off.
+/// The largest possible error of an order statistic at the tested levels.
 double largest_error(const QuantileSketch& sketch) {
   const std::vector<Bucket> buckets = sketch.buckets();
   double error = 0.0;
@@ -63,7 +63,7 @@ TEST(SketchOfAnOffset, HasTheQuantilesOfTheScatter) {
   }
 }
 
-/// |N|: half of a normal distribution, whose density is largest at zero. Its standard deviation is 0.6028.
+/// |N| for a standard normal N. Its density is largest at zero, its standard deviation is 0.6028.
 TEST(SketchOfANorm, HasTheQuantilesOfAFoldedNormal) {
   constexpr double kDeviation = 0.60281;
   std::vector<double> values;
@@ -75,7 +75,8 @@ TEST(SketchOfANorm, HasTheQuantilesOfAFoldedNormal) {
   }
 }
 
-/// The norm of three normal components: the root of a chi-square. Its standard deviation is 0.67340.
+/// The norm of three standard normal components, the square root of a chi-square variable. Its standard deviation is
+/// 0.6734.
 TEST(SketchOfANorm, HasTheQuantilesOfARootOfAChiSquare) {
   constexpr double kDeviation = 0.6734;
   const boost::math::chi_squared chi(3.0);
@@ -88,7 +89,7 @@ TEST(SketchOfANorm, HasTheQuantilesOfARootOfAChiSquare) {
   }
 }
 
-/// A few values that are far away cost a page each and leave the others theirs.
+/// A few outliers take a page each; the other values keep their fine pages.
 TEST(SketchOfAnOffset, IsNotRuledByOutliers) {
   for (const double outlier : {30.0, 300.0}) {
     std::vector<double> values = normal_values(100.0, 1.0);
@@ -101,7 +102,7 @@ TEST(SketchOfAnOffset, IsNotRuledByOutliers) {
   }
 }
 
-/// Half of the values are one number, as of a response that does not vary where a joint rests.
+/// Half of the values are equal, like a response that sometimes does not vary.
 TEST(SketchOfAnOffset, KnowsAtoms) {
   std::vector<double> values = normal_values(7.0, 1e-6, kCount / 2);
   values.insert(values.end(), kCount / 2, 7.0);
@@ -110,7 +111,7 @@ TEST(SketchOfAnOffset, KnowsAtoms) {
   EXPECT_NEAR(sketch.quantile(0.05), 7.0 + 1e-6 * normal_quantile(1.0, 0.1), 2.0 * kBound * 1e-6);
 }
 
-/// Ten thousand distributions of all scales cannot take more memory than their numbers of octaves.
+/// The stored size of a sketch is bounded for every offset.
 TEST(SketchOfAnOffset, HasBoundedMemory) {
   for (const double offset : {0.0, 1.0, 1e6}) {
     const QuantileSketch sketch = of(normal_values(offset, 1.0));

@@ -1,4 +1,4 @@
-// How often the intervals of Sobol' indices from squared differences have the index, by simulation.
+// Coverage of the intervals of Sobol' indices from squared differences, by simulation.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 using Errors = std::vector<double>;
 
-/// A function of standard normal errors (or of uniforms), with its indices.
+/// A function with known indices. normal: its errors are standard normal; otherwise uniform in (0, 1).
 struct Known {
   std::string name;
   bool normal;
@@ -36,7 +36,7 @@ double ishigami(const Errors& u) {
 
 double folded(const Errors& z) { return std::abs(std::sqrt(0.8) * z[0] + std::sqrt(0.2) * z[1]); }
 
-/// Log-normal: skewed, and its errors multiply.
+/// A log-normal response: skewed, and a product of functions of its errors.
 double skewed(const Errors& z) { return std::exp(0.6 * z[0] + 0.3 * z[1]); }
 
 std::vector<Known> known() {
@@ -53,7 +53,7 @@ std::vector<Known> known() {
           {"skewed", true, skewed, {a / all, b / all}, {a * (1.0 + b) / all, b * (1.0 + a) / all}}};
 }
 
-/// Uniforms or normals of so many samples, [P x n].
+/// [errors][n] Random errors of n samples, normal or uniform as the function asks.
 std::vector<std::vector<double>> draws(const Known& known, std::size_t sample_set, std::size_t repetition,
                                        std::size_t n) {
   std::vector<std::vector<double>> rows(known.S1.size(), std::vector<double>(n));
@@ -80,7 +80,7 @@ struct Coverage {
   double ST;
 };
 
-/// The share of repetitions in which the 95 % interval has the index of error p.
+/// The shares of repetitions in which the 95 % intervals of S1 and ST contain the true indices of error p. n: samples.
 Coverage coverage(const Known& known, std::size_t p, std::size_t n, std::size_t repetitions) {
   std::size_t has_S1 = 0;
   std::size_t has_ST = 0;
@@ -115,7 +115,8 @@ Coverage coverage(const Known& known, std::size_t p, std::size_t n, std::size_t 
 
 class Intervals : public ::testing::TestWithParam<std::size_t> {};
 
-// 1.5 points off the level are allowed, and 3.3 standard errors of what is measured: alpha is 0.1 % for each of 20.
+// The coverage may differ from 95 % by 1.5 percentage points plus 3.3 standard errors of the simulation (alpha = 0.1 %
+// for each of 20 intervals).
 TEST_P(Intervals, HaveTheIndexAsOftenAsTheySay) {
   const std::size_t n = GetParam();
   const std::size_t repetitions = n == 256 ? 3000 : 1000;

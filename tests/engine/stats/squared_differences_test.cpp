@@ -24,7 +24,8 @@ TEST(RatioSums, GivesTheRatioOfTheMeans) {
   EXPECT_DOUBLE_EQ(sums.mean_w(), 20.0 / 3.0);
 }
 
-// The ends of Fieller's interval are the ratios that Student's test of the mean of x - ratio w just does not refuse.
+// At the ends of Fieller's interval, Student's t-test of whether x - ratio w has the mean zero is exactly at its
+// critical value.
 TEST(RatioSums, IntervalEndsWhereStudentsTestRefusesTheRatio) {
   const std::vector<double> x{1.0, 2.0, 6.0, 3.5, 4.0};
   const std::vector<double> w{4.0, 5.0, 9.0, 7.5, 8.0};

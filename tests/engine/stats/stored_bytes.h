@@ -13,7 +13,7 @@ Bytes written(const Stats& stats) {
   return to.take();
 }
 
-/// What read(ByteReader&) gives for all of these bytes.
+/// The object that read(ByteReader&) reads from the bytes. Expects that it reads all of them.
 template <class Read>
 auto read_all(const Bytes& bytes, const Read& read) {
   ByteReader from(bytes);
@@ -22,8 +22,8 @@ auto read_all(const Bytes& bytes, const Read& read) {
   return stats;
 }
 
-/// Bytes that end too early are refused wherever they end, and what one changed byte makes of them is refused or read
-/// without harm.
+/// Expects that bytes which end too early are refused, and that bytes with one changed byte are refused or read without
+/// harm.
 template <class Read>
 void expect_no_harm(const Bytes& sound, const Read& read) {
   for (std::size_t length = 0; length < sound.size(); length += 1 + sound.size() / 200) {

@@ -80,7 +80,7 @@ TEST(StoredSketch, RefusesEveryTruncation) {
   }
 }
 
-/// A sketch of 300 numbers: its count, then the extremes, then whole numbers.
+/// The stored bytes of a sketch of 300 numbers: the count, the extremes, then the whole numbers `counts`.
 Bytes sketch_bytes(const std::array<double, 4>& extremes, const std::vector<std::uint64_t>& counts) {
   ByteWriter to;
   to.number(300);
@@ -91,7 +91,7 @@ Bytes sketch_bytes(const std::array<double, 4>& extremes, const std::vector<std:
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-/// A page of 64 counts.
+/// `before`, then a page of 64 counts of which only the first is not zero, then `after`.
 std::vector<std::uint64_t> with_page(std::vector<std::uint64_t> before, std::uint64_t first_count,
                                      const std::vector<std::uint64_t>& after) {
   before.push_back(first_count);
@@ -102,7 +102,8 @@ std::vector<std::uint64_t> with_page(std::vector<std::uint64_t> before, std::uin
 
 TEST(StoredSketch, RefusesWhatNoStreamGives) {
   const std::array range{1.0, 1.0, 1.0, kNone};
-  // Octave, zeros, pages above: the first one, and none below.
+  // The whole numbers are the octave, the count of zeros, the number of pages above zero (1) with its position and
+  // counts, and the number of pages below zero (0).
   const auto of_page = [&](std::uint64_t octave, std::uint64_t zeros, std::uint64_t at, std::uint64_t count) {
     return sketch_bytes(range, with_page({octave, zeros, 1, at}, count, {0}));
   };
@@ -110,9 +111,9 @@ TEST(StoredSketch, RefusesWhatNoStreamGives) {
   EXPECT_NO_THROW(read_back<QuantileSketch>(of_page(979, 1, 0, 299)));
   EXPECT_THROW(read_back<QuantileSketch>(of_page(979, 0, 0, 299)), BytesError);   // too few
   EXPECT_THROW(read_back<QuantileSketch>(of_page(979, 0, 0, 301)), BytesError);   // too many
-  EXPECT_THROW(read_back<QuantileSketch>(of_page(979, 301, 0, 0)), BytesError);   // likewise
+  EXPECT_THROW(read_back<QuantileSketch>(of_page(979, 301, 0, 0)), BytesError);   // too many zeros
   EXPECT_THROW(read_back<QuantileSketch>(of_page(978, 0, 0, 300)), BytesError);   // finer than doubles
-  EXPECT_THROW(read_back<QuantileSketch>(of_page(2048, 0, 0, 300)), BytesError);  // no scale
+  EXPECT_THROW(read_back<QuantileSketch>(of_page(2048, 0, 0, 300)), BytesError);  // no valid octave
   EXPECT_THROW(read_back<QuantileSketch>(of_page(979, 0, 1, 300)), BytesError);   // beyond the largest number
   const auto of_range = [&](const std::array<double, 4>& extremes) {
     return sketch_bytes(extremes, with_page({2047, 0, 1, 0}, 300, {0}));

@@ -13,12 +13,13 @@ namespace poesy {
 namespace {
 
 constexpr Interval kNoBounds{-1.0, 1.0};
-constexpr double kFreedom = 1e6;  // Student's quantiles are those of the normal: 1.96 at 95 %, 2.241 at 97.5 %
+constexpr double kFreedom = 1e6;  // so Student's quantiles are those of the normal: 1.96 at 95 %, 2.241 at 97.5 %
 
 Estimate symmetric(double value, double half) { return {value, {value - half, value + half}}; }
 
 TEST(ToldTogether, IsHolm) {
-  // Of three, the first is tested at 1 - 0.05/3 (2.394), the next at 97.5 % (2.241), the last at 95 % (1.960).
+  // Of three effects, the most certain one is tested at 1 - 0.05/3 (z = 2.394), the next at 97.5 % (2.241), the last at
+  // 95 % (1.960).
   const auto told = [](double a, double b, double c) {
     std::vector<Estimate> estimates;
     for (const double z : {a, b, c}) estimates.push_back(symmetric(0.01 * z, 0.01 * 1.95996));
@@ -27,7 +28,7 @@ TEST(ToldTogether, IsHolm) {
   EXPECT_EQ(told(2.40, 2.25, 1.97), (std::vector{true, true, true}));
   EXPECT_EQ(told(1.97, -2.40, 2.25), (std::vector{true, true, true}));
   EXPECT_EQ(told(2.40, 2.25, 1.95), (std::vector{true, true, false}));
-  EXPECT_EQ(told(2.40, 2.23, 1.97), (std::vector{true, false, false}));  // no further step after one that fails
+  EXPECT_EQ(told(2.40, 2.23, 1.97), (std::vector{true, false, false}));  // stops at the first that fails
   EXPECT_EQ(told(2.38, 2.38, 2.38), (std::vector{false, false, false}));
 }
 
@@ -45,7 +46,7 @@ TEST(ToldTogether, DoesNotCountWhatIsNotTested) {
   EXPECT_TRUE(told_together(estimates, kNoBounds, kFreedom, 0.95)[7]);
 }
 
-/// The interval at the level of the first step, from the same sums, says the same.
+/// The verdict agrees with the skewed interval of the same data at the level of Holm's first step.
 TEST(ToldTogether, FollowsSkewedIntervalsAtAnotherLevel) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -64,7 +65,7 @@ TEST(ToldTogether, FollowsSkewedIntervalsAtAnotherLevel) {
     if (found) {
       EXPECT_TRUE(strict.low > -1e-12 || strict.high < 1e-12) << n;
     }
-    // Not wider than in proportion, where the long tail is behind the end that faces zero.
+    // If the end of the interval that faces zero is on the side of the short tail, both verdicts are equal.
     const bool short_tail =
         estimates[0].interval.high - estimates[0].value < estimates[0].value - estimates[0].interval.low;
     if (estimates[0].value > 0.0 ? short_tail : !short_tail) {
@@ -75,13 +76,15 @@ TEST(ToldTogether, FollowsSkewedIntervalsAtAnotherLevel) {
 }
 
 TEST(ToldTogether, TakesTheOtherSideWhereAnEndIsAtABound) {
-  // By the moved end alone the product of both distances would be too small, and the effect certain.
+  // The lower end was moved to the bound. If only this end were used, the interval would look too narrow and the effect
+  // certain.
   std::vector<Estimate> estimates(64, symmetric(0.0, 1.0));
   estimates[0] = {-0.0079, {-0.008, -0.0001}};
   EXPECT_FALSE(told_together(estimates, {-0.008, 0.992}, kFreedom, 0.95)[0]);
 }
 
-/// Of 64 that are zero at most 5 % of all tables tell any. Alpha 1e-6 in 4000 tables.
+/// Each table has 64 effects that are truly zero. At most 5 % of the tables may call one of them certain (alpha = 1e-6
+/// for 4000 tables).
 TEST(ToldTogether, KeepsTheLevelOfAllTogether) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
@@ -91,7 +94,7 @@ TEST(ToldTogether, KeepsTheLevelOfAllTogether) {
   for (int n = 0; n < kTables; ++n) {
     std::vector<Estimate> estimates;
     for (int p = 0; p < 64; ++p) estimates.push_back(symmetric(1e-3 * normal(random), 1e-3 * 1.95996));
-    for (int p = 0; p < 3; ++p) estimates.push_back(symmetric(-0.05, 1e-3 * 1.95996));  // large ones
+    for (int p = 0; p < 3; ++p) estimates.push_back(symmetric(-0.05, 1e-3 * 1.95996));  // three large effects
     const std::vector<bool> told = told_together(estimates, kNoBounds, kFreedom, 0.95);
     EXPECT_TRUE(told[64] && told[65] && told[66]);
     wrong += std::find(told.begin(), told.begin() + 64, true) != told.begin() + 64 ? 1 : 0;
@@ -100,8 +103,8 @@ TEST(ToldTogether, KeepsTheLevelOfAllTogether) {
   }
   const double noise = 4.9 * std::sqrt(0.05 * 0.95 / kTables);
   EXPECT_LE(wrong, kTables * (0.05 + noise));
-  EXPECT_GE(wrong, kTables * (0.04 - noise));  // and is not far below it
-  EXPECT_GT(single, kTables * 0.9);            // what each interval alone would show
+  EXPECT_GE(wrong, kTables * (0.04 - noise));  // the level is nearly used up
+  EXPECT_GT(single, kTables * 0.9);            // by the single intervals
 }
 
 }  // namespace

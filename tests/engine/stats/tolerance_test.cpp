@@ -12,8 +12,8 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A response that is the norm of something linear: its mean square is b_m^2 + sum over p of (w_pm t_p)^2. Three errors
-/// at two poses; the third has no effect.
+/// The norm of a linear response to three errors at two poses. Its mean square at pose m is b_m^2 + sum over p of (w_pm
+/// t_p)^2, with the background b, the weights w and the tolerances t. The third error has no effect.
 struct LinearResponse {
   static constexpr std::uint64_t kSamples = 100;
   using Cells = Array<double, axis::Factor, axis::Pose>;
@@ -76,7 +76,7 @@ TEST(Tolerances, CannotBeCountedFromAReferenceWithoutEffect) {
 
 TEST(Tolerances, ReferenceOfSmallestEffectSkipsThoseWithoutAny) {
   const std::vector<double> sigma{1e-3, 1e-3, 2e-2, 1e-3};
-  EXPECT_EQ(smallest_effect(std::vector{0.0, 0.5, 0.1, kNaN}, sigma), 1u);  // 5e-4 is less than 2e-3
+  EXPECT_EQ(smallest_effect(std::vector{0.0, 0.5, 0.1, kNaN}, sigma), 1u);  // index x sigma: 5e-4 is less than 2e-3
   EXPECT_EQ(smallest_effect(std::vector{0.0, 1e-14, kNaN, kNaN}, sigma), std::nullopt);
 }
 
@@ -122,8 +122,8 @@ TEST(MeanSquareShares, AreWhatEachErrorAddsOverWhatAllAdd) {
   EXPECT_EQ(shares[2], 0.0);
 }
 
-// The first error has the larger global index, mean over poses plus spread between them, but the second adds more to
-// the mean square.
+// The first error has the larger global index (mean over the poses plus spread), but the second adds more to the mean
+// square.
 TEST(MeanSquareShares, DoNotFollowTheIndex) {
   const std::vector<double> mean(4, 0.0);
   const std::vector<std::uint64_t> count(4, 1'000'000);
@@ -178,7 +178,7 @@ TEST(LimitTolerances, KeepTheirProportions) {
   }
 }
 
-// Which of both has the larger one by itself is all the same: the other takes what it leaves.
+// If an upper bound limits one tolerance, the other tolerances become larger so that the limit is still reached.
 TEST(LimitTolerances, AreNoLargerThanTheyMayBe) {
   const LinearResponse response;
   const MeanSquare prediction = mean_square(response.study());

@@ -5,7 +5,7 @@
 
 namespace poesy::test {
 
-/// Moments by their definitions, in two passes of long double: the oracle for one-pass updates.
+/// Moments by their definitions, in two passes in long double. Reference for the one-pass updates.
 struct TwoPass {
   double mean;
   double variance;

@@ -16,11 +16,11 @@
 #include "engine/random/weighted_points.h"
 #include "engine/stats/yield_gradient.h"
 
-// Machines whose one response is the sum of independent errors, and the true gradients of their yield.
+// Machines whose only response is the sum of their errors, with the true gradients of their yield.
 
 namespace poesy::test {
 
-/// Of one independent error.
+/// The score of one independent error.
 inline ErrorScore score_of(const Distribution& distribution) {
   if (distribution.sigma() > 0.0) return NormalScore{distribution.sigma(), distribution.half_width()};
   const WeightedPoints points = weighted_points(distribution);
@@ -31,10 +31,10 @@ inline ErrorScore score_of(const Distribution& distribution) {
 struct YieldCase {
   std::vector<Distribution> errors;
   double limit;
-  std::vector<double> gradient;          ///< true dY/dt of each error
-  std::vector<double> correlation = {};  ///< of all errors, which are normal then; empty for independent ones
+  std::vector<double> gradient;          ///< true dY/dt, with the standard deviation t of each error
+  std::vector<double> correlation = {};  ///< [errors x errors] of normal errors; empty: independent
 
-  /// What is known of the errors.
+  /// The scores of all errors.
   ErrorScores scores() const {
     ErrorScores made;
     for (const Distribution& error : errors) {
@@ -46,7 +46,7 @@ struct YieldCase {
     return made;
   }
 
-  /// Replaces uniforms by errors, row by row.
+  /// Replaces uniform numbers by errors. rows: [errors].
   void transform(std::span<const std::span<double>> rows) const {
     if (correlation.empty()) {
       for (std::size_t p = 0; p < rows.size(); ++p) errors[p].transform(rows[p]);
@@ -57,7 +57,7 @@ struct YieldCase {
     for (std::size_t p = 0; p < rows.size(); ++p) errors[p].transform_scores(rows[p]);
   }
 
-  /// Of new machines from this engine.
+  /// The estimated gradient of the yield from new random machines.
   std::vector<Estimate> estimate(std::size_t machines, double conf_level, boost::random::mt19937_64& engine) const {
     std::vector<double> values(errors.size() * machines);
     for (double& value : values) value = uniform_from_bits(engine());
@@ -78,15 +78,15 @@ struct YieldCase {
   }
 };
 
-/// The derivative at x, by five points.
+/// The derivative at x by a five-point formula.
 inline double slope_at(double x, const std::function<double(double)>& function) {
   const double step = 1e-3 * x;
   return (8.0 * (function(x + step) - function(x - step)) - function(x + 2.0 * step) + function(x - 2.0 * step)) /
          (12.0 * step);
 }
 
-/// P(|sum| <= limit) for a sum of independent uniforms of these half-widths: its distribution function has the volume
-/// of a cut of a box (Barrow and Smith 1979, Am. Math. Mon. 86, 704-708).
+/// P(|sum| <= limit) for a sum of independent uniform variables with these half-widths, from the volume of a box cut by
+/// a plane (Barrow and Smith 1979, Am. Math. Mon. 86, 704-708).
 inline double share_of_uniforms(std::span<const double> half_widths, double limit) {
   double sum = 0.0;
   double box = 1.0;
@@ -104,7 +104,7 @@ inline double share_of_uniforms(std::span<const double> half_widths, double limi
   return 2.0 * sum / box - 1.0;
 }
 
-/// Normal errors.
+/// Independent normal errors.
 inline YieldCase normal_case(std::span<const double> sigma, double limit) {
   YieldCase made{{}, limit, {}};
   double variance = 0.0;
@@ -117,7 +117,7 @@ inline YieldCase normal_case(std::span<const double> sigma, double limit) {
   return made;
 }
 
-/// Normal errors of the same size, each two of which have this correlation.
+/// Three normal errors with the same sigma. Any two of them have this correlation.
 inline YieldCase correlated_case(double sigma, double correlation, double limit) {
   constexpr std::size_t kErrors = 3;
   const double variance = sigma * sigma * (kErrors + kErrors * (kErrors - 1) * correlation);
@@ -130,7 +130,7 @@ inline YieldCase correlated_case(double sigma, double correlation, double limit)
   return made;
 }
 
-/// Uniform errors.
+/// Independent uniform errors with these standard deviations.
 inline YieldCase uniform_case(std::span<const double> sigma, double limit) {
   YieldCase made{{}, limit, {}};
   std::vector<double> half_widths;
@@ -146,7 +146,7 @@ inline YieldCase uniform_case(std::span<const double> sigma, double limit) {
   return made;
 }
 
-/// Triangular errors, each the sum of two uniforms.
+/// Independent triangular errors with these standard deviations. Each is the sum of two uniform variables.
 inline YieldCase triangular_case(std::span<const double> sigma, double limit) {
   YieldCase made{{}, limit, {}};
   std::vector<double> half_widths;
@@ -164,7 +164,7 @@ inline YieldCase triangular_case(std::span<const double> sigma, double limit) {
 
 /// P(|m + e| <= limit) for a normal e and an m that is uniform from a to b.
 inline double share_of_uniform(double a, double b, double sigma, double limit) {
-  // an integral of the normal's distribution function
+  // an antiderivative of the normal distribution function
   const auto integral = [&](double x) {
     const double z = x / sigma;
     const double share = 0.5 * std::erfc(-z / std::numbers::sqrt2);
@@ -173,7 +173,8 @@ inline double share_of_uniform(double a, double b, double sigma, double limit) {
   return (integral(limit - a) - integral(limit - b) - integral(-limit - a) + integral(-limit - b)) / (b - a);
 }
 
-/// The same for an m of which each measured value, none of them equal to others, is spread evenly over its range.
+/// P(|m + e| <= limit) for a normal e and a measured m. Each measured value is spread evenly over its range; no two
+/// values are equal.
 inline double share_of_measured(const SmoothedValues& parts, double sigma, double limit) {
   double sum = 0.0;
   for (std::size_t k = 0; k < parts.values().size(); ++k) {
@@ -183,7 +184,7 @@ inline double share_of_measured(const SmoothedValues& parts, double sigma, doubl
   return sum / static_cast<double>(parts.values().size());
 }
 
-/// A measured error, of values that differ, and a normal one.
+/// One measured error and one normal error. values: the measured values, no two of them equal.
 inline YieldCase measured_case(const std::vector<double>& values, double sigma, double limit) {
   const Distribution measured = Distribution::measured(values);
   const auto grown = [&](double deviation) {

@@ -24,7 +24,7 @@ using test::written;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The reference case: y = a e, normal errors, |y| <= limit.
+/// The reference case: y = a . e with normal errors e and the limit |y| <= limit.
 struct Sum {
   std::array<double, 3> a{1.0, 2.0, 0.5};
   std::array<double, 3> sigma{0.1, 0.05, 0.2};
@@ -35,7 +35,7 @@ struct Sum {
   }
 };
 
-/// Draws of machines [3 x B] with their rejects.
+/// Random machines of a Sum: errors [3 x machines] and rejects.
 struct Machines {
   std::vector<double> errors;
   std::vector<std::uint8_t> rejected;
@@ -71,7 +71,8 @@ TEST(YieldGradient, HoldsTheReference) {
   }
 }
 
-/// The gradient of the share of |e| <= limit from evenly spread machines of one error, and that share at another sigma.
+/// One (truncated) normal error e with the limit |e| <= limit. Compares the gradient of the yield from scores of evenly
+/// spread machines, without random noise, with the exact one. half_width: where the distribution is cut off.
 struct OneError {
   double half_width;
   double limit;
@@ -112,7 +113,8 @@ TEST(YieldGradient, OfNormalAndTruncatedErrorsIsExact) {
   }
 }
 
-/// Each true gradient is in its interval of 99.9 %, whose half-width is within this part of it.
+/// Expects that each 99.9 % interval contains the true gradient and that its half-width is less than `part` of the
+/// gradient.
 void expect_gradient(const test::YieldCase& yield, std::size_t machines, double part, std::uint64_t seed) {
   boost::random::mt19937_64 engine(seed);
   const std::vector<Estimate> found = yield.estimate(machines, 0.999, engine);
@@ -137,7 +139,7 @@ TEST(YieldGradient, OfMeasuredErrorsHoldsTheClosedForm) {
   expect_gradient(test::measured_case(skewed, 0.3, 0.8), 1000000, 0.1, 24);
 }
 
-/// y = a . e, of which all but the second are correlated.
+/// y = a . e with four errors. All but the second are correlated.
 TEST(YieldGradient, OfCorrelatedNormalErrorsHoldsTheClosedForm) {
   constexpr std::size_t kMachines = 200000;
   constexpr double kLimit = 0.4;
@@ -163,7 +165,7 @@ TEST(YieldGradient, OfCorrelatedNormalErrorsHoldsTheClosedForm) {
        {{block, lower_triangle(copula.correlation())}}});
   scores.add(errors, rejected);
   const std::vector<Estimate> found = scores.gradient(0.999);
-  // variance = s' R s with s_i = a_i t_i
+  // The variance of y is s' R s with s_i = a_i t_i (slope x sigma) and the correlations R.
   std::array<double, 4> by_size{0.0, kSlope[1] * kSlope[1] * kSigma[1], 0.0, 0.0};
   double variance = by_size[1] * kSigma[1];
   for (std::size_t i = 0; i < 3; ++i) {
@@ -181,7 +183,7 @@ TEST(YieldGradient, OfCorrelatedNormalErrorsHoldsTheClosedForm) {
   }
 }
 
-/// What the yield changes by while one error grows by a tenth: the step itself, and no tenth of the slope.
+/// The change of the yield if one error becomes 10 % larger: the finite change, not a tenth of the gradient.
 TEST(YieldChange, IsThatOfAStep) {
   constexpr std::size_t kMachines = 400000;
   const Sum sum;
@@ -189,13 +191,13 @@ TEST(YieldChange, IsThatOfAStep) {
   ScoreSums scores(sum.errors());
   scores.add(machines.errors, machines.rejected);
   const std::vector<Estimate> change = scores.change(0.999);
-  for (std::size_t p = 0; p < 3; ++p) {  // each makes a third of the variance 0.03
+  for (std::size_t p = 0; p < 3; ++p) {  // each error causes a third of the variance 0.03
     const double expected = std::erf(0.3 / std::sqrt(2.0 * 0.0321)) - .9167354833;
     EXPECT_LT(change[p].interval.low, expected);
     EXPECT_GT(change[p].interval.high, expected);
     EXPECT_LT(change[p].interval.high - change[p].interval.low, 0.1 * std::abs(expected));
   }
-  // of one normal error alone at 3 sigma, where a tenth of the slope is a quarter too little
+  // For one normal error with a limit at 3 sigma, a tenth of the gradient would be a quarter too small.
   for (const double half_width : {kInfinity, 3.5}) {
     const OneError error{half_width, 3.0};
     const double expected = error.yield(1.1) - error.yield(1.0);
@@ -203,7 +205,7 @@ TEST(YieldChange, IsThatOfAStep) {
   }
 }
 
-/// No yield falls below nothing: of few good machines all that the score takes away may be more.
+/// The yield plus its change is not negative. With few good machines, the sum of the scores alone could give less.
 TEST(YieldChange, LeavesNoNegativeYield) {
   ScoreSums scores(ErrorScores{{NormalScore{1.0, kInfinity}}});
   scores.add(std::array{9.0, 9.0, 9.0, 0.1}, std::array<std::uint8_t, 4>{1, 1, 1, 0});
@@ -213,7 +215,8 @@ TEST(YieldChange, LeavesNoNegativeYield) {
   EXPECT_LE(change.interval.high, 0.75);
 }
 
-/// At 99.73 % polynomials of degree 6 find a twelfth of the gradient by a uniform error that alone makes the rejects.
+/// If a uniform error alone causes the rejects, polynomials of degree 6 find only a twelfth of the gradient at a yield
+/// of 99.73 %. The estimate must then be NaN instead of wrong by more than 30 %.
 TEST(YieldGradient, IsNotSaidOfAnErrorThatAloneMakesTheRejects) {
   constexpr std::size_t kMachines = 100000;
   for (const double limit : {0.5, 0.9, 0.9973}) {
@@ -231,7 +234,7 @@ TEST(YieldGradient, IsNotSaidOfAnErrorThatAloneMakesTheRejects) {
   }
 }
 
-/// The sums of normal errors, bit for bit.
+/// The stored sums for normal errors are those of their scores, bit for bit.
 TEST(ScoreSums, OfNormalErrorsAreTheirSquares) {
   constexpr std::size_t kMachines = 501;
   const Sum sum;
@@ -261,7 +264,7 @@ TEST(ScoreSums, OfNormalErrorsAreTheirSquares) {
   to.number(kMachines);
   to.number(rejects);
   for (const std::vector<double>& one : powers) to.reals(one);
-  to.reals(std::array<double, 18>{});  // no score is a polynomial
+  to.reals(std::array<double, 18>{});  // zeros, because no score is a polynomial
   EXPECT_EQ(written(scores), to.take());
 }
 
@@ -284,7 +287,7 @@ TEST(YieldGradient, NeedsTwoRejectsForAnInterval) {
   EXPECT_TRUE(std::isnan(scores.gradient(0.95).front().interval.high));
 }
 
-/// The same machines in blocks of this size, added or merged.
+/// The sums of the same machines in blocks of this size. merged: whether the blocks are merged or added.
 ScoreSums in_blocks(std::size_t size, bool merged) {
   constexpr std::size_t kMachines = 1003;
   const Sum sum;

@@ -37,7 +37,7 @@ Bytes encoded(std::span<const Bytes> stages, const RunTime& time = {2.5, 0.5}) {
   return file;
 }
 
-/// With a digest that matches.
+/// The content followed by its SHA-256 digest.
 Bytes sealed(Bytes content) {
   Sha256 sha;
   sha.bytes(content);
@@ -105,7 +105,7 @@ TEST(Checkpoint, RefusesContentThatDoesNotFitEvenWithItsDigest) {
     try {
       static_cast<void>(decode_checkpoint(sealed(std::move(changed))));
     } catch (const BytesError&) {
-      // Either is right, as long as it does not crash.
+      // Refusing and decoding are both right, as long as nothing crashes.
     }
   }
 }
@@ -252,7 +252,7 @@ TEST_F(Files, GiveTheStatesBackThatWereWrittenOrFoundLast) {
     EXPECT_TRUE(given(files, stage) == states[stage]) << stage;
     EXPECT_TRUE(given(later, stage) == states[stage]) << stage;
   }
-  // A state is taken over while the file that has it is replaced.
+  // The new file takes over a state from the old file that it replaces.
   const std::vector<ByteSource> taken_over{[&](ByteWriter& to) { files.write_state(0, to); },
                                            [](ByteWriter& to) { to.number(1); }};
   files.write(identity(), {}, taken_over);

@@ -19,7 +19,7 @@ namespace {
 
 bool outside_run(const std::string& path) { return path != "/run" && !path.starts_with("/run/"); }
 
-/// Paths of all objects below a group, the group itself first; a scale appears under each of its names.
+/// Appends the paths of a group and of all objects below it. A scale appears under each of its names.
 void collect(const h5::File& file, const std::string& path, std::vector<std::string>& paths) {
   paths.push_back(path);
   if (!file.is_group(path)) return;
@@ -50,7 +50,7 @@ Inventory inventory(const std::string& path) {
   return all;
 }
 
-/// Changes a copy of a file with the HDF5 library itself.
+/// A copy of a file that is changed with the HDF5 library directly.
 class Change {
  public:
   Change(const std::string& original, const std::string& copy) : copy_(copy) {
@@ -68,7 +68,8 @@ class Change {
   std::string copy_;
 };
 
-/// Changes the first element as H5Dread/H5Awrite see it: another text, or the lowest bit of a number flipped.
+/// Changes the first element of a dataset or an attribute: replaces a text, or flips the lowest bit of a number. read,
+/// write: the HDF5 functions for it.
 template <class Read, class Write>
 void alter(hid_t type, hid_t space, const Read& read, const Write& write) {
   const auto count = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space));
@@ -159,7 +160,7 @@ TEST_P(ContentHash, ChangesWithEveryAttribute) {
   EXPECT_GT(all.attributes.size(), 50U);
   for (const Attribute& attribute : all.attributes) {
     if (is_bookkeeping(attribute.name)) continue;
-    if (attribute.name == "filetype" || attribute.name == "version") continue;  // then it is no result file any more
+    if (attribute.name == "filetype" || attribute.name == "version") continue;  // without them it is not a result file
     const std::string hash = hash_after([&](hid_t file) { alter_attribute(file, attribute); });
     EXPECT_EQ(hash != hash_, outside_run(attribute.path) && attribute.name != "content_sha256")
         << attribute.path << " " << attribute.name;

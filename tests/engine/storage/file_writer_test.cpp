@@ -95,7 +95,7 @@ TEST(FileWriter, HasATemporaryNameThatNobodyCanGuess) {
   EXPECT_EQ(names.size(), 20U);
 }
 
-/// Makes the temporary name known beforehand.
+/// A source of "random" bytes that are all 0x11, so that the temporary name is known in advance.
 bool fill_with_ones(std::span<std::byte> bytes) {
   std::ranges::fill(bytes, std::byte{0x11});
   return true;

@@ -40,7 +40,7 @@ TEST(FileWriter, PutsBytesInAnyOrder) {
   EXPECT_EQ(read_bytes(folder / "f"), std::string_view("hello\0wor", 9));
 }
 
-/// Numbers without a pattern that a wrong order would keep.
+/// Random numbers, so that a wrong order would be noticed.
 std::vector<double> some_numbers(std::size_t count) {
   std::vector<double> values(count);
   std::mt19937_64 random(7);
@@ -48,7 +48,7 @@ std::vector<double> some_numbers(std::size_t count) {
   return values;
 }
 
-/// More elements than one slice, cut along each axis.
+/// Shapes with more elements than one slice, so that they are cut along different axes.
 class Slices : public testing::TestWithParam<h5::Shape> {};
 
 TEST_P(Slices, AreWrittenAndReadInOrder) {
@@ -85,7 +85,8 @@ INSTANTIATE_TEST_SUITE_P(Shapes, Slices,
                          testing::Values(h5::Shape{1'500'001}, h5::Shape{3, 700'001}, h5::Shape{700'001, 3},
                                          h5::Shape{2, 1, 600'007, 1}, h5::Shape{5, 7, 30'011}, h5::Shape{2, 524'288}));
 
-/// A file with groups, texts, small and large datasets. large: numbers in all of the large ones.
+/// Writes groups, texts, and small and large datasets to a file. large: number of elements of all large datasets
+/// together.
 void compose(h5::File& file, std::size_t large) {
   file.make_group("/group");
   file.set_attribute("/group", "description", std::string("of numbers"));
@@ -111,7 +112,8 @@ TEST(FileOnDisk, HasTheContentOfOneInMemory) {
   EXPECT_EQ(content_sha256(h5::File::open(folder / "f.h5")), content_sha256(memory));
 }
 
-/// What the disk says when a file does not fit; empty when it does. A reader's error before that is none of the disk's.
+/// The message if the file does not fit on the disk. Empty if it fits. If HDF5 fails first, the writer must know the
+/// reason too.
 std::string message_of(const std::string& path, std::size_t large) {
   FileWriter writer(path);
   try {
@@ -159,7 +161,7 @@ TEST(FileOnDisk, MayBeLeftUnfinished) {
   h5::close_library();
 }
 
-/// The same dataset as another program may store it: in chunks, compressed.
+/// Writes the dataset as another program may store it: in compressed chunks.
 void write_chunks(const std::string& path, const std::vector<double>& values) {
   const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   const hsize_t length = values.size();
@@ -186,7 +188,7 @@ TEST(FileOnDisk, HasTheHashOfOneInChunks) {
   EXPECT_EQ(content_sha256(h5::File::open(folder / "chunks.h5")), content_sha256(file));
 }
 
-/// A dataset of more than one slice is hashed as its definition says.
+/// A dataset of more than one slice has the hash of its whole content.
 TEST(FileOnDisk, IsHashedInSlicesAsAWhole) {
   const TempFolder folder;
   constexpr std::size_t kCount = 1'000'003;
@@ -233,14 +235,14 @@ TEST(H5File, LeavesNothingOpen) {
 
 TEST(H5File, SaysWhenTheDiskFails) {
   try {
-    h5::File::open("/proc/self/mem");  // a plain file of which nothing can be read at 0
+    h5::File::open("/proc/self/mem");  // a plain file, but reading at offset 0 fails
     ADD_FAILURE() << "was opened";
   } catch (const h5::Error& error) {
     EXPECT_NE(std::string(error.what()).find("Input/output error"), std::string::npos) << error.what();
   }
 }
 
-/// Some file systems have no locks, and a result that is being read may be replaced.
+/// Reading needs no lock: some file systems have none, and a result may be replaced while it is read.
 TEST(H5File, IsReadWhateverLocksItHas) {
   const TempFolder folder;
   const std::string path = folder / "f.h5";

@@ -19,16 +19,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// content_sha256 of some results.
+/// content_sha256 of two results.
 const std::string kResult(64, '1');
 const std::string kOther(64, '2');
 
-/// A command that is killed.
+/// Thrown in place of a command that is killed.
 struct Killed {};
 
 class OutputFolders : public testing::Test {
  protected:
-  /// A command that writes these files, each with this text.
+  /// Acts as a command that writes these files, each with this text. result: content_sha256 of the result that it
+  /// shows.
   void write_all(const std::vector<std::string>& names, const std::string& text, const std::string& result = kResult) {
     OutputFolder output(folder_.path(), result);
     for (const std::string& name : names) output.claim(name);
@@ -37,10 +38,10 @@ class OutputFolders : public testing::Test {
     });
   }
 
-  /// A command that writes these bytes as a.csv.
+  /// Acts as a command that writes these bytes to a.csv.
   void write(const std::string& bytes) { write_all({"a.csv"}, bytes); }
 
-  /// A command of these files that is killed when the first of them is there.
+  /// Acts as a command that should write these files and is killed after the first one.
   void kill(const std::vector<std::string>& names, const std::string& result) {
     OutputFolder killed(folder_.path(), result);
     for (const std::string& name : names) killed.claim(name);
@@ -51,7 +52,7 @@ class OutputFolders : public testing::Test {
                  Killed);
   }
 
-  /// The user writes a file, later than poesy wrote its own.
+  /// Acts as the user, who writes a file after poesy wrote its files.
   void change(const std::string& name, const std::string& bytes) {
     folder_.write(name, bytes);
     fs::last_write_time(folder_ / name, fs::last_write_time(folder_ / kManifest) + std::chrono::milliseconds(1));
@@ -89,7 +90,7 @@ TEST_F(OutputFolders, AFileThatWasChangedIsRefused) {
   write("z\n0.1\n");
   change("a.csv", "z\n0.2\n");
   expect_refused("a.csv", "was changed since poesy wrote it");
-  // Nor does it become poesy's by what another command writes later.
+  // The file still belongs to the user after another command has written other files.
   write_all({"b.csv"}, "of the other\n");
   expect_refused("a.csv", "does not list it");
   EXPECT_EQ(read_bytes(folder_ / "a.csv"), "z\n0.2\n");

@@ -38,7 +38,7 @@ TEST_P(SecondName, LeavesTheFirstAndReplacesTheSecond) {
   EXPECT_EQ(files_in(folder_.path()), 2U);
 }
 
-/// Replacing one of the two afterwards leaves the other: the names do not share what is written later.
+/// A file that is later moved to the first name does not change the content at the second name.
 TEST_P(SecondName, MayBeGivenAgainAndAgain) {
   const std::string path = folder_.write("new", "1");
   const std::string second = folder_ / "old";
@@ -58,7 +58,7 @@ TEST_P(SecondName, IsNotTouchedWhenThereIsNoFirst) {
 INSTANTIATE_TEST_SUITE_P(Ways, SecondName, testing::Values(::link, no_hard_links),
                          [](const auto& each) { return std::string(each.param == ::link ? "HardLink" : "Copy"); });
 
-/// The names that were taken away from a folder while `act` was under way, as the kernel tells them.
+/// The names that were removed from a folder while `act` ran, as reported by inotify.
 template <class Act>
 std::multiset<std::string> names_taken_away(const std::string& folder, const Act& act) {
   const int watcher = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);

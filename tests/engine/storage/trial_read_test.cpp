@@ -23,7 +23,7 @@ namespace {
 
 class TrialRead : public testing::Test {
  protected:
-  /// What the FileError says that comes of reading so; empty when there is none.
+  /// The message of the FileError that a trial read throws. Empty if it throws none.
   std::string message(const std::function<void()>& read, unsigned long wait_seconds = kTrialWaitSeconds) const {
     try {
       trial_read(path_, read, wait_seconds);
@@ -72,7 +72,7 @@ TEST_F(TrialRead, SurvivesAnyEnd) {
   expect_message("crashes", [] { throw std::runtime_error("no FileError"); });
 }
 
-/// HDF5 raises no SIGKILL: a system without memory does.
+/// HDF5 does not raise SIGKILL, but a system without memory does. So the file is not called damaged.
 TEST_F(TrialRead, CallsAFileThatWasNotReadNotDamaged) {
   EXPECT_EQ(message([] { std::raise(SIGKILL); }),
             path_ +
@@ -92,7 +92,7 @@ TEST_F(TrialRead, EndsWhatDoesNotEnd) {
   });
 }
 
-/// A file may look as large as one likes, and its limits grow with its size.
+/// The limits grow with the size of the file, but not with its holes: a sparse file may claim any size.
 TEST_F(TrialRead, GivesNothingForTheHolesOfAFile) {
   std::filesystem::resize_file(path_, std::uintmax_t{1} << 35U);
   EXPECT_NO_THROW(trial_read(path_, [] {
@@ -130,7 +130,7 @@ TEST_F(TrialRead, HasSoMuchMemoryAndNoMore) {
 }
 
 TEST_F(TrialRead, NeedsNobodyToWaitForIt) {
-  const auto before = std::signal(SIGCHLD, SIG_IGN);  // as some programs leave it to those they start
+  const auto before = std::signal(SIGCHLD, SIG_IGN);  // as some programs set it for their child processes
   EXPECT_EQ(message([] {}), "");
   EXPECT_NE(message([] { throw FileError("f", "is wrong", "mend it"); }), "");
   expect_message("crashes", [] { std::abort(); });

@@ -22,7 +22,7 @@ std::string pose_text(std::string_view table) {
   return outside_pose_text("p.csv", selection.from_file, select_poses(selection, kModel).poses, kModel.description());
 }
 
-/// The workspace of z is from -0.3 m to -0.18 m, that of beta from -0.5 rad to 0.5 rad.
+/// The workspace has z from -0.3 m to -0.18 m and beta from -0.5 rad to 0.5 rad.
 TEST(BareNumbers, OfPosesOutsideTheWorkspace) {
   EXPECT_EQ(
       pose_text("z,beta,gamma\n-0.2,0,0\n-250,0,0\n"),
@@ -75,7 +75,8 @@ TEST(BareNumbers, OfErrorsFarBeyondTheirSize) {
       << "the default is 1 deg";
 }
 
-/// Of a study: the poses of its file, measured values against other errors of their dimension.
+/// The checked tables of a study are its file of poses and its measured values. Measured values are compared with the
+/// other errors of their dimension.
 TEST(BareNumbers, OfTheTablesOfAStudy) {
   const test::TempFolder folder;
   folder.write("p.csv", "z,beta,gamma\n-250,0,0\n");

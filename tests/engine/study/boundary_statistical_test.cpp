@@ -15,11 +15,12 @@ namespace {
 using Select = PoseSelection::Select;
 using Point = std::span<const double>;
 
-/// Probability that a test fails although poses are uniform by area. The sequence is fixed, so a test never flickers.
+/// Probability that a test fails although the poses are uniform by area. The random numbers are fixed, so a test always
+/// gives the same result.
 constexpr double kAlpha = 1e-3;
 constexpr std::size_t kCount = 20'000;
 
-/// Pearson's test that poses fall into cells in proportion to the cells' areas.
+/// Pearson's chi-square test that the numbers of poses in cells are proportional to the cells' areas.
 void expect_shares(const PoseSet& poses, const std::vector<double>& areas,
                    const std::function<std::size_t(Point)>& cell_of) {
   std::vector<double> counts(areas.size(), 0.0);
@@ -40,7 +41,8 @@ PoseSet boundary_of(const Model& model, std::size_t dimension, std::size_t count
   return boundary_poses(test::unit_cube(Select::boundary, count, dimension), model).poses;
 }
 
-/// 2 c for the face where coordinate c is 0, 2 c + 1 where it is 1; 2 C for a point inside the cube.
+/// The number of the unit cube's face that the pose is on: 2 c if coordinate c is 0, 2 c + 1 if it is 1. Inside the
+/// cube it is 2 x number of coordinates.
 std::size_t face_of(Point pose) {
   for (std::size_t c = 0; c < pose.size(); ++c) {
     if (pose[c] == 0.0) return 2 * c;
@@ -86,8 +88,8 @@ TEST(BoundaryOfABall, IsUniformInHeightAndLongitude) {
 }
 
 TEST(BoundaryOfABallCutByTheBox, HasSharesOfCapsAndDiscs) {
-  // A ball of radius 0.6 about the cube's centre: the faces cut discs of radius^2 0.11, and caps of height 0.1 are
-  // lost.
+  // A ball of radius 0.6 about the centre of the cube. The faces cut it in discs with radius^2 = 0.11, which removes
+  // caps of height 0.1 from the sphere.
   const test::RegionModel ball([](Point p) { return std::hypot(p[0] - 0.5, p[1] - 0.5, p[2] - 0.5) <= 0.6; });
   const double disc = std::numbers::pi * 0.11;
   const double sphere = 4.0 * std::numbers::pi * 0.36 - 6.0 * 2.0 * std::numbers::pi * 0.6 * 0.1;
@@ -95,11 +97,11 @@ TEST(BoundaryOfABallCutByTheBox, HasSharesOfCapsAndDiscs) {
 }
 
 TEST(BoundaryUnderALimit, HasTheAreasOfItsFaces) {
-  // Joint q_2 is beta + gamma: the limit cuts the cube's corner off along an oblique plane.
+  // Joint q_2 is beta + gamma, so its limit cuts the box along an oblique plane.
   PoseSelection selection = test::selection_of(Select::boundary, kCount, {{-2.0, -1.0}, {0.0, 1.0}, {0.0, 1.0}});
   selection.limits = {{1, {-1.0, 1.0}, {}}};
   const PoseSet poses = boundary_poses(selection, test::FakeModel()).poses;
-  // Two triangles of area 1/2, two full squares, and the plane: sqrt(2) x 1.
+  // The boundary has two triangles of area 1/2, two squares of area 1 and the oblique plane of area sqrt(2).
   expect_shares(poses, {0.5, 0.5, 1.0, 1.0, std::numbers::sqrt2}, [](Point p) -> std::size_t {
     if (p[0] == -2.0) return 0;
     if (p[0] == -1.0) return 1;

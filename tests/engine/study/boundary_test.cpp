@@ -93,7 +93,7 @@ TEST(Boundary, FindsBothSidesOfAHole) {
     EXPECT_TRUE(std::abs(distance - 0.45) < 1e-14 || std::abs(distance - 0.3) < 1e-14) << distance;
     inner += distance < 0.4 ? 1 : 0;
   }
-  // Share of the inner sphere's area: 0.3^2 / (0.3^2 + 0.45^2) = 4 / 13.
+  // The inner sphere has the share 0.3^2 / (0.3^2 + 0.45^2) = 4 / 13 of the area.
   EXPECT_NEAR(static_cast<double>(inner) / 4000.0, 4.0 / 13.0, 0.02);
 }
 

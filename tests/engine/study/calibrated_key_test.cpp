@@ -9,7 +9,7 @@
 namespace poesy {
 namespace {
 
-/// Half of each response is left.
+/// The fake mechanism with a calibration that leaves half of each response.
 class Correctable final : public test::FakeModel {
  public:
   using FakeModel::FakeModel;

@@ -21,7 +21,7 @@ const Catalog kCatalog = fake_catalog();
 constexpr std::string_view kHead =
     "format = \"poesy-study\"\nversion = 1\n[mechanism]\nmodel = \"fake\"\n[poses]\ncount = 3\n";
 
-/// A Monte Carlo study of the fake mechanism's three errors.
+/// The text of a Monte Carlo study of the fake mechanism. errors: text of [errors]; analysis: text of [analysis].
 std::string study_text(const std::string& errors,
                        const std::string& analysis = "kind = \"monte-carlo\"\ndraws = \"per pose\"\n") {
   return std::string(kHead) + "[analysis]\n" + analysis + "[errors]\n" + errors;
@@ -31,14 +31,14 @@ Study read(const std::string& text, const std::string& path = "study.toml", Stud
   return study_of_text(text, path, kCatalog, use);
 }
 
-/// Which refuses the study at '^'.
+/// Expects that reading the study fails with these words at the place of '^'.
 void expect_refused(const std::string& marked, const std::vector<std::string>& words,
                     const std::string& path = "study.toml") {
   const Marked text(marked);
   expect_input_error([&] { read(text.text, path); }, {path, text.line, text.column}, words);
 }
 
-/// Ten parts, two of whose sizes go up together.
+/// A table of ten measured parts, in which the columns hole and tilt are correlated.
 constexpr std::string_view kParts =
     "part,hole [mm],tilt,other\n"
     "a,0.01,1e-4,x\nb,0.02,3e-4,x\nc,0.05,5e-4,x\nd,0.03,2e-4,x\ne,-0.01,-1e-4,x\n"
@@ -84,8 +84,8 @@ TEST_F(MeasuredErrors, StandInTheResolvedStudyWithoutTheFile) {
   EXPECT_EQ(resolved_text(again), text);
 }
 
-// Spearman's rank correlation of the two columns: 1 - 6 * 10 / 990, where the squared differences of ranks add up
-// to 10.
+// Spearman's rank correlation of the two columns is 1 - 6 * 10 / 990, because the squared differences of the ranks add
+// up to 10.
 TEST_F(MeasuredErrors, KeepTheirRankCorrelation) {
   folder_.write("parts.csv", kParts);
   const std::string errors = "[errors.override]\n" + measured("delta_1", "hole") + measured("epsilon_1", "tilt");
@@ -188,7 +188,7 @@ TEST(CorrelatedErrorsFile, IsForErrorsThatVaryTogether) {
       {"'epsilon_1'", "does not vary"});
 }
 
-/// A plan of the fake mechanism's three errors, the first and the last correlated.
+/// A plan with the three errors of the fake mechanism. The first and the last error are correlated.
 Plan plan_of(const std::string& kind = "kind = \"monte-carlo\"\ndraws = \"per pose\"\n") {
   const Study study =
       read(study_text("override = { delta_2 = { distribution = \"uniform\", half_width = \"2 mm\" } }\n" +
@@ -210,7 +210,7 @@ TEST(PlanOfCorrelatedErrors, TransformsBlocksTogetherAndOthersAlone) {
   std::vector<double> errors = uniforms;
   plan.transform(errors, kCount);
   for (std::size_t b = 0; b < kCount; ++b) {
-    // delta_2 leads the block, so it keeps its own draw; delta_1 follows it.
+    // delta_2 is the first error of the block, so it keeps its own draw. delta_1 depends on it.
     EXPECT_NEAR(errors[2 * kCount + b], plan.distributions()[2].quantile(uniforms[2 * kCount + b]), 1e-17);
     EXPECT_EQ(errors[kCount + b], plan.distributions()[1].quantile(uniforms[kCount + b]));
     const double z = 0.75 * normal_quantile(1.0, uniforms[2 * kCount + b]) +

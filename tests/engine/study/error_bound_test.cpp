@@ -11,7 +11,7 @@
 namespace poesy {
 namespace {
 
-/// Lengths up to the arm make sense, angles up to half a turn.
+/// The fake mechanism, with lengths bounded by the arm and angles by three radians.
 class BoundedModel final : public test::FakeModel {
  public:
   using FakeModel::FakeModel;
@@ -38,7 +38,7 @@ void read(const std::string& rest) { study_of_text(kHead + rest, "study.toml", k
 
 struct BadSize {
   const char* name;
-  std::string rest;  ///< of the study, the place of the mistake marked with ^
+  std::string rest;  ///< rest of the study's text; a ^ marks the place of the mistake
   std::vector<std::string> words;
 };
 
@@ -128,7 +128,7 @@ TEST(ErrorBound, OfATable) {
   const std::string path = folder.write("errors.csv", "delta_2,delta_1\n0.01,0\n0,-0.06\n");
   test::expect_input_error([&] { read_errors(path, model); }, {path, 3, 3},
                            {"gives delta_1 an error of -60 mm, no less than the arm (60 mm)", "'delta_1 [mm]'"});
-  // 75 typed for 75 um, and for micrometres that the header names.
+  // 75 without a unit (meant as 75 um) is refused; with the unit um in the header it is read.
   const std::string bare = folder.write("bare.csv", "delta_1\n75\n");
   test::expect_input_error([&] { read_errors(bare, model); }, {bare, 2, 1}, {"75000 mm", "'delta_1 [mm]'"});
   EXPECT_EQ(read_errors(folder.write("um.csv", "delta_1 [um]\n75\n"), model).rows, 1u);

@@ -35,7 +35,7 @@ class GivenMachines : public ::testing::Test {
     test::expect_input_error([&] { study_of_text(text.text, path, kCatalog, StudyUse::run); },
                              {path, text.line, text.column}, words);
   }
-  /// A table with a mistake at '^'.
+  /// Expects that a table of machines with a mistake at '^' is refused with these words.
   void expect_wrong_table(const std::string& marked, const std::vector<std::string>& words) {
     const test::Marked rows(marked);
     const std::string path = folder_.write("parts.csv", rows.text);

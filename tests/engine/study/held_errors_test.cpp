@@ -17,7 +17,7 @@ Study study_with(const std::string& sections) {
       "study.toml", kCatalog, StudyUse::run);
 }
 
-/// The background alone, of a study that varies delta_1 and epsilon_1 unless told otherwise.
+/// A study with this background. By default it varies delta_1 and epsilon_1. errors: text of [errors].
 Study held(const std::string& background, const std::string& errors = "",
            const std::string& factors = "\"deforming\"") {
   return study_with("[errors]\n" + errors + "[analysis]\nfactors = " + factors + "\nbackground = " + background + "\n");
@@ -41,7 +41,7 @@ TEST(BackgroundSize, IsOneMillimetreAndOneDegreeWhereErrorsSayNothing) {
   EXPECT_DOUBLE_EQ(background.angular, parse_quantity("1 deg").si);
 }
 
-/// A uniform error of half-width w has the standard deviation w / sqrt 3, a triangular one w / sqrt 6.
+/// A uniform error with the half-width w has the standard deviation w / sqrt(3), a triangular one w / sqrt(6).
 TEST(BackgroundSize, IsTheStandardDeviationOfOtherDistributions) {
   const Background background = *held("{ factors = \"benign\" }",
                                       "linear = { distribution = \"uniform\", half_width = \"3 mm\" }\n"
@@ -61,7 +61,7 @@ TEST(BackgroundSize, IsWrittenInTheResolvedStudy) {
       "[analysis.background]\nfactors = \"benign\"\nlinear = \"2e-05 m\"\nangular = \"0.017453292519943295 rad\"");
 }
 
-/// What is held does nothing to an error that varies: -0.05 mm were ignored without a word.
+/// A background value has no effect on an error that varies, so it must be refused instead of silently ignored.
 TEST(BackgroundOfAnErrorThatVaries, IsRefusedAtItsName) {
   const auto refused = [](const std::string& analysis, const std::vector<std::string>& words) {
     const Marked marked(

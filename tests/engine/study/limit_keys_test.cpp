@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The fake mechanism with a response that has a sign and one that has none.
+/// The fake mechanism with a signed response z and a response gap that has no sign.
 Catalog limited_catalog() {
   Catalog catalog = test::fake_catalog();
   catalog[0].description.responses = {{"z", Dimension::length, "with a sign"}, {"gap", Dimension::length, "without"}};
@@ -40,7 +40,7 @@ Study study_with(const std::string& text) {
   return read_study(folder.write("study.toml", text), kCatalog, StudyUse::run);
 }
 
-/// The only limit, and again after its resolved text was read.
+/// The only limit of a study with these limits. Expects the same limit after the resolved text is read again.
 ValueLimit limit_of(const std::string& limits, const std::string& analysis = kPerMachine) {
   const Study study = study_with(text_with(analysis, limits));
   EXPECT_EQ(study.analysis.limits.size(), 1u) << limits;

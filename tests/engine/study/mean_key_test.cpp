@@ -102,7 +102,7 @@ TEST(Limits, AreRefusedWhereTheyMakeNoSense) {
                         {"errors.linear.limits does not belong", "measured"});
 }
 
-/// Lengths up to the arm make sense.
+/// The fake mechanism, with lengths bounded by the arm.
 class BoundedModel final : public test::FakeModel {
  public:
   using FakeModel::FakeModel;

@@ -11,7 +11,7 @@
 #include "models/registry.h"
 #include "tests/support/input_error.h"
 
-// [[response]]: what it gives, and what it refuses.
+// Tests the responses that a study defines with [[response]], and the mistakes that are refused.
 namespace poesy {
 namespace {
 
@@ -33,7 +33,7 @@ std::size_t position_of(const ModelDescription& model, std::string_view name) {
   return static_cast<std::size_t>(found - model.responses.begin());
 }
 
-/// Random errors [F] of 0.1 mm and mrad.
+/// `count` random errors with the standard deviation 1e-4: 0.1 mm or 0.1 mrad.
 std::vector<double> random_errors(std::size_t count, std::uint64_t seed = 4) {
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> normal(0.0, 1e-4);
@@ -42,7 +42,7 @@ std::vector<double> random_errors(std::size_t count, std::uint64_t seed = 4) {
   return errors;
 }
 
-/// Responses [R] of random errors in the middle of the workspace.
+/// [responses] The responses to random errors at the middle of the workspace.
 std::vector<double> responses_of(const Study& study) {
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   const ModelDescription& description = model->description();
@@ -138,13 +138,13 @@ constexpr const char* kPrevious = "relative_to = \"previous\"\n";
 constexpr const char* kMachines = "draws = \"per machine\"\n";
 constexpr const char* kRise = "[[response]]\nname = \"rise\"\nsum = { z = 1, theta_x = \"-20 mm\" }\n";
 
-/// Blocks of three samples at poses one after the other, by one evaluator.
+/// One evaluator that evaluates blocks of three samples at one pose after the other.
 class Poses {
  public:
   explicit Poses(const Study& study)
       : model_(build_model(study.mechanism)), evaluator_(model_->evaluator({})), description_(study.model()) {}
 
-  /// Responses [R x 3] of machines with this seed.
+  /// [responses x 3] Responses of three random machines. previous: the pose before this one; empty if there is none.
   std::vector<double> at(const std::vector<double>& pose, std::span<const double> previous, std::uint64_t seed) {
     const std::vector<double> none(description_.factors.size(), 0.0);
     std::vector<FactorIndex> varied;
@@ -200,7 +200,7 @@ TEST(RelativeResponses, AreLessTheirValueAtThePose) {
   }
 }
 
-// An evaluator remembers the block before. What it gives must not depend on that.
+// An evaluator reuses results of the block before. Its responses must not depend on this.
 TEST(RelativeResponses, AreLessTheirValueAtThePoseBefore) {
   const Study study = read(kRise + std::string(kPrevious) + kTilt + kPrevious, kMachines);
   Poses remembering(study);
@@ -244,8 +244,8 @@ TEST(RelativeResponses, AreDescribedAndResolved) {
       std::ranges::any_of(remarks, [](const std::string& remark) { return remark.starts_with("rise is less"); }));
 }
 
-/// A model of one coordinate and one error, whose response is their product. Its solve ends at a pose of 1 as the error
-/// says.
+/// A model with one coordinate and one error; the response is their product. At the pose 1 the error determines the
+/// status of the solve.
 class Product final : public Model {
  public:
   Product() {

@@ -5,7 +5,7 @@
 #include "tests/support/input_error.h"
 #include "tests/support/kinds.h"
 
-// Patterns in the place of the names of errors. The mechanism has delta_1, epsilon_1 and delta_2.
+// Tests patterns in place of names of errors. The mechanism has the errors delta_1, epsilon_1 and delta_2.
 namespace poesy {
 namespace {
 

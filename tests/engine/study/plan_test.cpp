@@ -15,7 +15,7 @@ constexpr StudyKind kOneByOne{
     .name = "one by one", .asks = "", .keys = {}, .varies = Varies::one_by_one, .at_pose = {}};
 constexpr StudyKind kTogether{.name = "together", .asks = "", .keys = {}, .varies = Varies::together, .at_pose = {}};
 
-/// Factors 2 and 0 of the fake mechanism (in this order), each with its own distribution.
+/// A study of the errors 2 and 0 of the fake mechanism, in this order. Each error has a different distribution.
 Study study_with(const CatalogEntry& entry, std::size_t samples) {
   Study study;
   study.mechanism.entry = &entry;

@@ -200,7 +200,7 @@ TEST(RejectedPoses, AreToldByTheirNumberAndReason) {
   EXPECT_TRUE(some_out_of_reach(rejected));
   EXPECT_FALSE(some_out_of_reach(std::span(rejected).subspan(1, 1)));
   EXPECT_EQ(rejected_text({}, 30), "");
-  EXPECT_EQ(rejected_text(rejected, 0), "");  // of a boundary
+  EXPECT_EQ(rejected_text(rejected, 0), "");  // a boundary has no number of candidates
 }
 
 TEST(RejectedPoses, AreCountedAmongTheCandidates) {
@@ -292,7 +292,7 @@ TEST_P(EmptyWorkspace, SaysThatEveryPoseIsSingular) {
                            {"the workspace is empty (singular: condition number above 1.125: ", "raise max_condition"});
 }
 
-/// A mechanism that cannot tell how near to singular its poses are.
+/// A mechanism whose condition number is NaN at all poses.
 class UndefinedCondition : public test::FakeModel {
  public:
   double condition(std::span<const double> /*pose*/) const override { return std::numeric_limits<double>::quiet_NaN(); }

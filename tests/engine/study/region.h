@@ -11,7 +11,7 @@
 
 namespace poesy::test {
 
-/// The fake mechanism where it reaches a region of any shape and number of coordinates; never singular.
+/// The fake mechanism with a workspace that `inside` defines, with any number of coordinates. It is never singular.
 class RegionModel : public FakeModel {
  public:
   explicit RegionModel(std::function<bool(std::span<const double>)> inside) : inside_(std::move(inside)) {}
@@ -28,7 +28,7 @@ class RegionModel : public FakeModel {
 
 inline const RegionModel kWholeBox([](std::span<const double>) { return true; });
 
-/// Poses of a box with these ranges.
+/// A selection of poses from a box with these ranges (SI).
 inline PoseSelection selection_of(PoseSelection::Select select, std::size_t count, std::vector<Range> workspace) {
   PoseSelection selection;
   selection.select = select;
@@ -39,12 +39,12 @@ inline PoseSelection selection_of(PoseSelection::Select select, std::size_t coun
   return selection;
 }
 
-/// The box of the fake mechanism: z, beta, gamma.
+/// A selection from the workspace of the fake mechanism: z (m), beta and gamma (rad).
 inline PoseSelection fake_box(PoseSelection::Select select, std::size_t count) {
   return selection_of(select, count, {{-0.30, -0.18}, {-0.5, 0.5}, {-0.6, 0.6}});
 }
 
-/// The unit cube of this dimension.
+/// A selection from the unit cube of this dimension.
 inline PoseSelection unit_cube(PoseSelection::Select select, std::size_t count, std::size_t dimension) {
   return selection_of(select, count, std::vector<Range>(dimension, {0.0, 1.0}));
 }

@@ -11,7 +11,7 @@
 namespace poesy {
 namespace {
 
-/// The fake mechanism, if its responses were forces and their like.
+/// The fake mechanism with responses of these dimensions, e.g. forces.
 Catalog catalog_of(Dimension first, Dimension second) {
   Catalog catalog = test::fake_catalog();
   catalog[0].description.responses = {{"load", first, "first response"}, {"other", second, "second response"}};

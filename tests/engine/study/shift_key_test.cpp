@@ -41,7 +41,7 @@ TEST(Shift, IsRefusedWhereItMakesNoSense) {
       {"'delta_1', whose distribution has a shift"});
 }
 
-/// Lengths up to the arm make sense.
+/// The fake mechanism, with lengths bounded by the arm.
 class BoundedModel final : public test::FakeModel {
  public:
   using FakeModel::FakeModel;

@@ -10,7 +10,7 @@
 namespace poesy {
 namespace {
 
-/// The fake mechanism at two fidelities; the second is twice as large.
+/// The fake mechanism at two fidelities. The second has an arm twice as long.
 Catalog catalog_with_choice() {
   Catalog catalog = test::fake_catalog();
   catalog[0].description.fidelities = {"exact", "first-order"};

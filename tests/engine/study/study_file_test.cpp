@@ -21,7 +21,7 @@ Study study_of(std::string_view text, StudyUse use = StudyUse::run) {
   return read_study(folder.write("study.toml", text), kCatalog, use);
 }
 
-/// The valid study with one passage replaced.
+/// The text of the valid study with one passage replaced.
 std::string changed(const std::string& passage, const std::string& replacement) {
   std::string text(test::kValidStudy);
   const std::size_t begin = text.find(passage);
@@ -172,7 +172,7 @@ TEST(ReadStudyToEvaluate, TakesKindsAndPosesThatCannotBeRunYet) {
            StudyUse::evaluate);
 }
 
-/// What is said of a standard deviation of linear errors; empty when it is taken.
+/// The message with which this standard deviation of linear errors is refused. Empty if it is accepted.
 std::string refusal_of_sigma(const std::string& sigma) {
   const std::string errors = "[errors]\nlinear = { distribution = \"normal\", sigma = \"" + sigma + "\" }\n";
   try {
@@ -184,7 +184,7 @@ std::string refusal_of_sigma(const std::string& sigma) {
   }
 }
 
-/// Of units that a letter more or less makes another one, none is proposed: 8 dm would become 8 m.
+/// No unit of another size is proposed for an unknown unit, even if only one letter differs: 8 dm would become 8 m.
 TEST(ReadStudy, GuessesNoUnitOfAnotherSize) {
   for (const std::string unit : {"dm", "km", "nm", "pm", "em", "mn", "mmm", "foot", "grad", "x"}) {
     const std::string said = refusal_of_sigma("8 " + unit);
@@ -228,8 +228,8 @@ TEST(ReadStudy, RefusesTooManyCellsAcrossFactors) {
 
 struct BadStudy {
   const char* name;
-  std::string passage;      ///< of the valid study; empty: the replacement is the whole file
-  std::string replacement;  ///< the place of the mistake marked with ^
+  std::string passage;      ///< a passage of the valid study; empty: the replacement is the whole file
+  std::string replacement;  ///< text in place of the passage; a ^ marks the place of the mistake
   std::vector<std::string> words;
 };
 
@@ -294,7 +294,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadStudy{"TitleNumber", "\"A study\"", "^5", {"title is the whole number 5"}}),
     kName);
 
-/// The valid study with another select and other keys in [poses] before the workspace; with "file" instead of it.
+/// The valid study with this `select` and these other keys (rest) in [poses]. With "file" the workspace is commented
+/// out.
 BadStudy bad_poses(const char* name, const std::string& select, const std::string& rest,
                    std::vector<std::string> words) {
   return {name, "select = \"interior\"\ncount = 20\n",
@@ -492,7 +493,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadStudy{"BackgroundKey", "linear = \"1 mm\", angular", "^lineal = \"1 mm\", angular", {"'linear'?"}}),
     kName);
 
-/// The valid study as one of the kind, with these lines in its [analysis].
+/// The valid study with another kind and with these lines in [analysis].
 std::string with_limits(const std::string& kind, const std::string& lines) {
   return changed("kind = \"sensitivity\"", "kind = \"" + kind + "\"\n" + lines);
 }

@@ -12,7 +12,7 @@
 namespace poesy {
 namespace {
 
-/// Reads damaged texts; counts those that are refused. Anything but a value or an InputError fails the test.
+/// Reads damaged texts and counts how many are refused with an InputError. Other exceptions make the test fail.
 template <class Read>
 class Damage {
  public:
@@ -77,7 +77,7 @@ TEST(DamagedTemplate, IsAStudyOrAnInputErrorWhateverBytesChange) {
     try {
       read_study(path, catalog, StudyUse::run);
     } catch (const FileError&) {
-      // A comment without its sign may name a file, and there is none.
+      // A damaged comment may have become a key that names a file, which does not exist.
     }
   });
   std::mt19937_64 random(20240608);

@@ -22,7 +22,7 @@ namespace {
 
 extern const Catalog kCatalog;
 
-/// The fake mechanism as if it could be calibrated, which makes no difference, and as the catalog describes it.
+/// The fake mechanism with the description of kCatalog. It accepts calibration, which changes nothing.
 class CalibratedFake : public test::FakeModel {
  public:
   using FakeModel::FakeModel;
@@ -34,13 +34,14 @@ class CalibratedFake : public test::FakeModel {
   }
 };
 
-/// The same as if its platform had points.
+/// A CalibratedFake whose platform has points, for the platform metric.
 class FakeByPlatform final : public CalibratedFake {
  public:
   std::vector<PlatformPoint> metric_points() const override { return {{0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}}; }
 };
 
-/// The fake mechanism with two fidelities and two metrics, which make no difference. Every file describes it.
+/// A catalog of the fake mechanism with two fidelities and two metrics, which change nothing. Every mechanism file is
+/// read as this mechanism.
 Catalog catalog() {
   Catalog two = test::fake_catalog();
   two.from_text = [](const std::string&, const std::string& path) {
@@ -110,13 +111,14 @@ limits = { q_1 = ["0 mm", "400 mm"], q_2 = ["-1 rad", "1 rad"] }
 max_condition = 1e6
 )";
 
-/// Studies in which every key of every table is used, for every kind and choice of poses for which it holds.
+/// Studies that together use every key of every table, with every kind of study and every selection of poses that allow
+/// the key.
 std::vector<std::string> studies() {
   const std::string head(kHead);
   const std::string box(kBox);
   std::string both = head;
   both.replace(both.find("\"exact\""), 7, "\"both\"");
-  // Without a tolerance, whose default is another one by the platform's metric.
+  // Without the tolerance, because its default differs for the platform metric.
   std::string by_platform = head;
   by_platform.replace(by_platform.find("tolerance = 1e-12"), 17, "");
   by_platform.replace(by_platform.find("\"published\""), 11,
@@ -259,23 +261,24 @@ void visit(toml::table& table, const std::string& path, const OnTable& on_table)
   }
 }
 
-/// A key where a study uses it.
+/// One use of a key in one of the studies().
 struct Use {
   const StudyTable* table;
   const StudyKey* key;
-  std::size_t study;      ///< position among studies()
-  std::size_t visited;    ///< position among its tables, as visit() counts them
-  std::string name;       ///< of the key, there
-  std::string full_name;  ///< as messages have it
-  std::string word;       ///< of the table's chooser, there
+  std::size_t study;      ///< index in studies()
+  std::size_t visited;    ///< index of the table in the order of visit()
+  std::string name;       ///< the key as the study writes it
+  std::string full_name;  ///< path and name as in messages
+  std::string word;       ///< the value of the table's chooser (e.g. kind) in the study
 };
 
-/// Whether a key stands for names of the model's, which is said in capitals.
+/// Whether a key is a placeholder for names of the model, like SET. Placeholders are in capitals.
 bool is_name_of_model(const StudyKey& key) {
   return std::ranges::all_of(key.name, [](unsigned char letter) { return std::isupper(letter) != 0; });
 }
 
-/// The description of a name in a table whose chooser is this word: its own, or that of names of the model's.
+/// The description of a key in a table whose chooser has the value `word`: that of the key itself, or that of the
+/// placeholder for names of the model.
 const StudyKey* description(const StudyTable& table, const std::string& name, const std::string& word) {
   if (const StudyKey* key = table.find(name, word)) return key;
   const bool is_set = kCatalog.front().description.find_set(name) != nullptr;
@@ -318,7 +321,7 @@ const std::vector<Use>& all_uses() {
   return found;
 }
 
-/// The study of a use with the key set to this TOML value, or without the key where there is none.
+/// The study of a use with the key set to this TOML value. Empty value: without the key.
 std::string changed(const Use& use, std::string_view value) {
   toml::table study = toml::parse(studies()[use.study]);
   std::size_t visited = 0;
@@ -337,7 +340,7 @@ std::string changed(const Use& use, std::string_view value) {
   return text.str();
 }
 
-/// The study with every default filled in.
+/// Reads the study. Returns its resolved text, with every default filled in.
 std::string read(const std::string& text) {
   static const test::TempFolder folder;
   static const std::string poses = folder.write("poses.csv", "z,beta,gamma\n-0.2,0,0\n");
@@ -349,7 +352,7 @@ std::string read(const std::string& text) {
   return resolved_text(read_study(folder.write("study.toml", text), kCatalog, StudyUse::run));
 }
 
-/// Why the study is refused; empty when it is not.
+/// The message with which the study is refused. Empty if it is accepted.
 std::string refusal(const std::string& text) {
   return test::refusal_of([&] { read(text); });
 }
@@ -358,8 +361,9 @@ std::string literal(std::string_view usual) {
   return usual.starts_with('`') ? std::string(usual.substr(1, usual.find('`', 1) - 1)) : std::string();
 }
 
-/// Keys that the studies of this test cannot have: loads and sizes of errors that are numbers, because only mechanisms
-/// of files have such; and how a machine is calibrated, which `poesy run` refuses (tests/program/calibrate_test.py).
+/// Whether the studies of this test cannot use a key. Loads, and sizes of errors without a unit (`relative`), need a
+/// mechanism from a file. Keys of calibration are for other commands than `poesy run`
+/// (tests/program/calibrate_test.py).
 bool is_used_elsewhere(const StudyTable& table, const StudyKey& key) {
   const std::string_view path = table.paths.front();
   const bool is_load = path == "mechanism.load" || (path == "mechanism" && key.name == "load");
@@ -386,7 +390,7 @@ TEST(StudyKeys, AreAllUsedByTheStudiesOfThisTest) {
   for (const std::string& study : studies()) EXPECT_EQ(refusal(study), "") << study;
 }
 
-/// No key takes a date, so what is not refused for it was not read.
+/// No key accepts a date. So a key that is set to a date and not refused was not read.
 TEST(StudyKeys, AreAllRead) {
   for (const Use& use : all_uses()) {
     const std::string reason = refusal(changed(use, "2026-01-31"));
@@ -404,7 +408,7 @@ TEST(StudyKeys, AreRequiredWhereTheySayIt) {
   }
 }
 
-/// A key that is left out is as one with its default, wherever it may be left out alone.
+/// If a key may be left out, the study is the same as with the stated default.
 TEST(StudyKeys, HaveTheDefaultsThatTheyName) {
   std::set<const StudyKey*> left_out;
   for (const Use& use : all_uses()) {
@@ -417,7 +421,7 @@ TEST(StudyKeys, HaveTheDefaultsThatTheyName) {
   for (const StudyTable& table : study_kinds().tables) {
     for (const StudyKey& key : table.keys) {
       if (is_used_elsewhere(table, key)) continue;
-      // What is said beside a required key tells where it may be left out.
+      // The default of a required key only states where the key may be left out.
       EXPECT_EQ(left_out.contains(&key), !key.required && !key.usual.empty()) << table.paths.front() << " " << key.name;
     }
   }
@@ -433,7 +437,7 @@ TEST(StudyKeys, TakeTheWordsThatTheyName) {
   }
 }
 
-/// What lies just outside bounds, as a study has it for one type or another, and what its refusal says.
+/// Values just outside some stated bounds, as TOML of different types, and a part of the message that refuses them.
 struct Outside {
   std::string_view bounds;
   std::vector<std::string> values;
@@ -481,7 +485,7 @@ TEST(StudyKeys, AreFoundAtEveryPathOfAStudy) {
   EXPECT_EQ(find_table(study_kinds().tables, "analysi"), nullptr);
 }
 
-/// Without comment signs and with single spaces.
+/// The words of a text without '#' signs, separated by single spaces.
 std::string words_of(const std::string& text) {
   std::istringstream in(text);
   std::string words;
@@ -491,7 +495,8 @@ std::string words_of(const std::string& text) {
   return words + " ";
 }
 
-/// Names of the model's stand there themselves, and sections explain themselves.
+/// Whether templates explain a key. They do not explain placeholders, for which they write the names of the model, and
+/// sections.
 bool in_templates(const StudyTable& table, const StudyKey& key) {
   return !(table.paths.front().empty() && key.type == "table") && !is_name_of_model(key);
 }

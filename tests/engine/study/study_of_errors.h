@@ -26,7 +26,7 @@ inline Study study_of_errors(const std::string& errors, const Catalog& catalog =
   return study_of_text(text_of_errors(errors), "study.toml", catalog, StudyUse::run);
 }
 
-/// Expects a mistake at the mark '^', with these words.
+/// Expects that this [errors] section is refused with these words at the place of '^'.
 inline void expect_errors_refused(const std::string& marked, const std::vector<std::string>& words,
                                   const Catalog& catalog = catalog_of_errors()) {
   const Marked text(text_of_errors(marked));

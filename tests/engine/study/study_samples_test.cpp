@@ -108,7 +108,8 @@ TEST(AdaptiveSamples, CountWithTheirMaximum) {
   }
 }
 
-/// Why a run with the second table does not continue a checkpoint of the first; empty when it does.
+/// The message with which a run with the samples `now` refuses a checkpoint of a run with the samples `before`. Empty
+/// if it continues.
 std::string refusal(const std::string& before, const std::string& now) {
   const auto identity = [](const std::string& samples) {
     return identity_of(study_of(study_with("samples = " + samples + "\n")), PoseSet(3, {-0.2, 0.0, 0.0}));

@@ -272,7 +272,7 @@ TEST(Template, NamesEveryKey) {
   }
 }
 
-/// Each trajectory that a template shows behind a '#' reads in place of the box.
+/// Each trajectory that a template shows as a comment can be read if it replaces the workspace.
 TEST(Template, ShowsTrajectoriesThatRead) {
   const std::string text = template_text(kCatalog[0], kSensitivityStudy);
   std::size_t shown = 0;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view kFile = "t,z,beta,gamma\n0,-0.2,0,0\n1,-0.2,0.1,0\n2,-0.3,0.1,0\n";
 
-/// A study with this trajectory, and whatever follows it in [poses].
+/// The text of a study with this trajectory. The text may go on with other keys of [poses].
 std::string study_with(std::string_view trajectory) {
   return "format = \"poesy-study\"\nversion = 1\n[mechanism]\nmodel = \"fake\"\n[poses]\nselect = \"trajectory\"\n"
          "trajectory = " +
@@ -108,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 struct Bad {
   const char* name;
-  std::string trajectory;  ///< the mistake marked with ^
+  std::string trajectory;  ///< a ^ marks the place of the mistake
   std::vector<std::string> words;
 };
 

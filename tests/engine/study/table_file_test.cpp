@@ -158,7 +158,7 @@ TEST(ReadErrors, CellsMayBeInQuotes) {
 
 struct BadTable {
   const char* name;
-  std::string text;  ///< the place of the mistake marked with ^
+  std::string text;  ///< text of the table; a ^ marks the place of the mistake
   std::vector<std::string> words;
 };
 

@@ -21,7 +21,8 @@ Trajectory wave(std::size_t points, double start, double end) {
   return trajectory;
 }
 
-/// Points of a file in (z, beta, gamma), all coordinates from the times by these functions.
+/// A trajectory of points from a file with the coordinates z, beta and gamma. The given functions compute z and beta
+/// from the time.
 template <class Z, class Beta>
 Trajectory file_of(const std::vector<double>& time, const Z& z, const Beta& beta) {
   Trajectory trajectory;
@@ -119,7 +120,7 @@ TEST(File, OfThreePointsIsJoinedByStraightLines) {
 }
 
 TEST(Refused, TheFirstPointThatNoPoseGives) {
-  // sum = t - 1 passes 2 rad after t = 3.
+  // sum = t - 1 exceeds 2 rad after t = 3.
   test::expect_input_error(
       [] { select_poses(selection_of(wave(9, 0.0, 4.0)), kModel); }, {"study.toml", 8, 14},
       {"point 8 of 9, at t = 3.5 s (depth = 264.922 mm, sum = 143.239 deg, difference = 28.6479 deg)",

@@ -9,8 +9,8 @@ namespace {
 
 const test::FakeModel kModel;
 
-/// What is unusual if the box of z (m), beta and gamma (rad) is this one, and the poses have these values of z. The
-/// workspace of z is from -0.3 m to -0.18 m, that of beta from -0.5 rad to 0.5 rad.
+/// The clause about what is unusual in a selection from these ranges of z (m) and beta (rad), with poses at these
+/// values of z. The mechanism's workspace has z from -0.3 m to -0.18 m and beta from -0.5 rad to 0.5 rad.
 std::string unusual(const Range& z, const std::vector<double>& z_of_poses, const Range& beta = {-0.5, 0.5}) {
   PoseSelection selection;
   selection.workspace = {z, beta, {-0.6, 0.6}};

@@ -12,11 +12,12 @@
 #include "tests/support/input_error.h"
 #include "tests/support/kinds.h"
 
-// Features of a drawing that scatter in their zones. The mechanism has delta_1, epsilon_1 and delta_2.
+// Tests errors.zones: features of a drawing that scatter within their zones. The mechanism has the errors delta_1,
+// epsilon_1 and delta_2.
 namespace poesy {
 namespace {
 
-/// A mechanism with an axis, whose middle is delta_1 and whose tilt is delta_2.
+/// A mechanism with one feature, an axis: its middle is the error delta_1, its tilt the error delta_2.
 Catalog with_axis(const Zone& location) {
   Catalog catalog = test::fake_catalog();
   Feature axis{.name = "bore_1", .label = "bore", .limb = 1, .frame = 0, .kind = FeatureKind::axis, .size = {0.04}};
@@ -118,7 +119,7 @@ TEST(ZoneKeys, AreRefusedWithPlaceAndRemedy) {
           test::fake_catalog());
 }
 
-/// The axis between two planes, so that it has two errors.
+/// The axis with a zone between two planes, so that it has one middle and one tilt error.
 Catalog between_planes(std::optional<Zone> orientation = std::nullopt) {
   Catalog catalog = with_axis({"position", 5e-5, "A|B"});
   catalog.front().description.features.front().one_direction = true;
@@ -146,7 +147,7 @@ TEST(ZoneShapes, AreReadBackFromTheirText) {
   }
 }
 
-/// Half the zone is 25 um. Both ends of the axis are within it: closed forms.
+/// Half the zone is 25 um. The standard deviations of axes with both ends inside the zone have closed forms.
 TEST(ZoneShapes, GiveNormalsOfTheirStandardDeviationToOneErrorAtATime) {
   const Study uniform = read_shape("errors.zones = { distribution = \"uniform\" }\n");
   EXPECT_EQ(uniform.errors.by_factor[0].shape(), Distribution::Shape::normal);

@@ -1,5 +1,6 @@
-"""Prints what a file holds, for h5_contents.m: of each dataset and of each attribute of the root its path ("/@name" of an
-attribute), a line that says the type, one of reversed dimensions, then a value on each line.
+"""Prints the content of an HDF5 file for h5_contents.m. For each dataset and each attribute of the root: its path
+("/@name" for an attribute), a line with the type, a line with the dimensions in reverse order, then each value on a
+line.
 
 usage: h5_text.py FILE
 """

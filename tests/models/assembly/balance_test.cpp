@@ -3,7 +3,8 @@
 #include "models/assembly/first_order.h"
 #include "tests/models/assembly/made.h"
 
-// Forces balance, passive joints feel none of them, and they are what the energy changes by.
+// Tests that the wrenches balance, that they do no work in passive joints, and that they are the derivatives of the
+// energy.
 namespace poesy::assembly {
 namespace {
 
@@ -11,7 +12,7 @@ using Eigen::Index;
 
 Index row_of(std::size_t k) { return 6 * static_cast<Index>(k); }
 
-/// The largest force of all limbs, or moment over the reach.
+/// The largest of all limbs' forces and of their moments divided by the reach (N).
 double largest(const AssemblyModel& model, const std::vector<Screw>& wrenches) {
   double most = 0.0;
   for (const Screw& wrench : wrenches) {
@@ -20,7 +21,8 @@ double largest(const AssemblyModel& model, const std::vector<Screw>& wrenches) {
   return most;
 }
 
-/// Wrenches sum up to the load's opposite at each body, and do no work in passive joints.
+/// Expects that at each body the limbs' wrenches and the load add up to zero, and that the wrenches do no work in
+/// passive joints.
 void expect_balance(const AssemblyModel& model, const Nominal& pose, const std::vector<LimbState>& limbs,
                     const std::vector<Screw>& wrenches) {
   const double reach = model.assembly.reach;
@@ -44,7 +46,7 @@ void expect_balance(const AssemblyModel& model, const Nominal& pose, const std::
   }
 }
 
-/// The columns of a balance as screws.
+/// The wrenches of the limbs in one column of a balance.
 std::vector<Screw> wrenches_of(const Balance& balance, Index column = 0) {
   std::vector<Screw> list;
   for (Index row = 0; row < balance.wrenches.rows(); row += 6) {
@@ -53,7 +55,7 @@ std::vector<Screw> wrenches_of(const Balance& balance, Index column = 0) {
   return list;
 }
 
-/// Each of the mechanisms by its stiffness, at its pose.
+/// Calls check(model, pose) for each case with the stiffness metric.
 template <class Check>
 void for_each_case(Check check) {
   for (const Case& one : cases()) {
@@ -87,7 +89,7 @@ TEST(AssemblyBalance, FirstOrderForcesBalance) {
   });
 }
 
-/// Components of a joint's reaction along its freedoms, where no drive holds it.
+/// The components of a passive joint's reaction along its freedoms. They must vanish. None for an actuated joint.
 std::vector<std::string> free_components(const file::Joint& joint) {
   if (joint.actuated) return {};
   switch (joint.kind) {
@@ -124,7 +126,7 @@ TEST(AssemblyBalance, ReactionsAlongFreedomsVanish) {
   EXPECT_GE(compared, 60u);
 }
 
-/// Twists of limbs' ends by displacements of their drives, [6 limbs x drives].
+/// [6 limbs x drives] The twists of the limbs' ends per displacement of each drive.
 Eigen::MatrixXd drive_twists(const AssemblyModel& model, const Nominal& pose) {
   const std::vector<ReportedJoint>& drives = model.report.drives;
   Eigen::MatrixXd columns =
@@ -154,10 +156,10 @@ TEST(AssemblyBalance, EnergyChangesByForcesOnErrorsDrives) {
     sizes.resize(static_cast<std::size_t>(twists.cols()), 0.1 * kMillimetre);
     const Eigen::VectorXd errors = vector_of(sizes);
     const Eigen::VectorXd forces =
-        twists.transpose() * first_order.effect(twists * errors).wrenches;  // on each error, and of each drive
+        twists.transpose() * first_order.effect(twists * errors).wrenches;  // along each error and each drive
     const double most = forces.cwiseProduct(errors).cwiseAbs().maxCoeff();
     for (Index f = 0; f < errors.size(); ++f) {
-      const auto with = [&](double step) {  // the energy is quadratic: its difference quotient is its derivative
+      const auto with = [&](double step) {  // exact, because the energy is quadratic
         const Eigen::VectorXd changed = errors + step * Eigen::VectorXd::Unit(errors.size(), f);
         return energy(pose, first_order.effect(twists * changed));
       };

@@ -11,15 +11,15 @@
 #include "tests/models/assembly/made.h"
 #include "tests/support/isa.h"
 
-// The kernel against plain Newton and the plain first order, and against itself: a sample does not depend on its
-// neighbours.
+// Compares the SIMD kernel with the plain Newton solver and the plain first-order solution. Also tests that a sample
+// does not depend on the other samples of its block.
 namespace poesy::assembly {
 namespace {
 
-/// Samples of all errors.
+/// Samples in which all errors vary.
 struct Samples {
-  std::vector<std::vector<double>> errors;  ///< [count][F]
-  std::vector<double> values = {};          ///< [F x count]
+  std::vector<std::vector<double>> errors;  ///< [count][errors]
+  std::vector<double> values = {};          ///< [errors x count]
   std::vector<FactorIndex> varied = {};
   std::vector<double> constant = {};
 
@@ -41,7 +41,7 @@ Samples drawn(const AssemblyModel& model, double size, std::size_t count) {
   return samples;
 }
 
-/// With all components of each limb's wrench among the responses.
+/// The model of a case that reports all components of each limb's wrench.
 AssemblyModel with_reactions(const Case& one, Metric metric) {
   AssemblyModel model = made(one.text(), metric);
   model.report.reactions.clear();
@@ -49,13 +49,13 @@ AssemblyModel with_reactions(const Case& one, Metric metric) {
   return model;
 }
 
-/// What a block gives.
+/// The outcomes of a block of samples.
 struct Block {
-  std::vector<double> responses;  ///< [R x count]
+  std::vector<double> responses;  ///< [responses x count]
   std::vector<SolveStatus> status;
   std::vector<std::uint32_t> iterations;
 
-  /// Of one sample.
+  /// The responses of sample b.
   std::vector<double> of(std::size_t b) const {
     std::vector<double> values;
     for (std::size_t at = b; at < responses.size(); at += status.size()) values.push_back(responses[at]);
@@ -76,7 +76,8 @@ Block block_of(const AssemblyModel& model, PoseProblem& problem, How how, Sample
   return made;
 }
 
-/// Responses of one sample agree: displacements to a share of the reach, forces to a share of the largest.
+/// Expects the same responses of one sample. of_reach: tolerance of lengths divided by the reach, and of angles (rad).
+/// of_forces: tolerance of other responses, relative to the largest one of their kind.
 void expect_same_responses(const AssemblyModel& model, const std::vector<double>& found,
                            const std::vector<double>& wanted, double of_reach, double of_forces) {
   const std::vector<Response> responses = responses_of(model);
@@ -118,7 +119,7 @@ TEST_P(AssemblyKernel, AgreesWithPlainNewton) {
       SCOPED_TRACE("sample " + std::to_string(b));
       const Nominal& pose = problem.pose();
       Solution wanted = solution_of(model, pose, samples.errors[b]);
-      // Plain Newton leaves out how joints turn under wrenches, and then takes many small steps where these are large.
+      // Plain Newton neglects that joints turn under wrenches. With large wrenches it therefore needs many small steps.
       const bool is_hard = solved(found.status[b]) && !solved(wanted.status);
       if (is_hard) wanted = solution_of(model, pose, samples.errors[b], 100 * kOptions.max_iterations);
       EXPECT_EQ(found.status[b], is_hard ? SolveStatus::converged : wanted.status);
@@ -157,7 +158,7 @@ void expect_same_bits(const std::vector<double>& found, const std::vector<double
   }
 }
 
-/// Samples in other orders, in blocks of other sizes.
+/// Expects the same bits for each sample in other orders and in blocks of other sizes.
 void expect_same_at_any_place(const AssemblyModel& model, PoseProblem& problem, How how, Samples& samples) {
   const Block wanted = block_of(model, problem, how, samples);
   std::vector<std::size_t> order(samples.errors.size());
@@ -181,7 +182,7 @@ TEST_P(AssemblyKernel, IsTheSameAtAnyPlace) {
   });
 }
 
-/// Samples that are no numbers, or far too large, change nothing of their neighbours.
+/// Samples with NaN, infinite or far too large errors do not change the other samples of their block.
 TEST_P(AssemblyKernel, IgnoresWrongNeighbours) {
   for_each_sample(19, [](const AssemblyModel& model, PoseProblem& problem, Samples& samples) {
     for (const How how : {How::solve, How::map}) {

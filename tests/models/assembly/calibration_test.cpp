@@ -1,4 +1,4 @@
-// What the best correction of the drives leaves: against solves of the same machine with its drives moved.
+// Compares what remains after the best correction of the drives with solves of the same machine with moved drives.
 #include "models/assembly/calibration.h"
 
 #include <Eigen/QR>
@@ -11,7 +11,8 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-/// An assembly at a pose, of which drives can be moved: frames before driven joints move along or about their axes.
+/// An assembly at a pose whose drives can be moved. Moving a drive moves the frame before the actuated joint along or
+/// about the joint's axis.
 class Driven {
  public:
   Driven(const AssemblyModel& model, const std::vector<double>& pose) : model_(model), at_(model.at(pose)) {
@@ -25,7 +26,7 @@ class Driven {
 
   Eigen::Index drives() const { return static_cast<Eigen::Index>(drives_.size()); }
 
-  /// Displacements [moved; theta] of all bodies but the base, [6 bodies].
+  /// [6 bodies] The displacements [moved; theta] (m, rad) of all bodies except the base.
   Vector displacements(const std::vector<double>& errors, const Vector& by_drives) const {
     ErrorFrames frames(model_);
     std::vector<std::vector<Transform>> moved = frames.with(errors, at_.displacements);
@@ -45,7 +46,7 @@ class Driven {
     return all;
   }
 
-  /// Where a displacement of the platform moves its points, [3 points].
+  /// [3 points] The displacements of the platform's points (m) for this displacement of the platform.
   Vector of_points(const Vector& displacements) const {
     Vector moved(3 * static_cast<Eigen::Index>(model_.assembly.points.size()));
     const Vector3 theta = displacements.segment<3>(3);
@@ -59,12 +60,12 @@ class Driven {
  private:
   const AssemblyModel& model_;
   Nominal at_;
-  std::vector<std::pair<std::size_t, std::size_t>> drives_;  ///< limb and joint
+  std::vector<std::pair<std::size_t, std::size_t>> drives_;  ///< limb and joint of each drive
 };
 
 class Calibration : public testing::TestWithParam<std::tuple<const char*, Metric>> {};
 
-/// Errors of some nm and 1e-6 deg, so that what drives take away has no second order.
+/// The errors are some nm and 1e-6 deg, so small that the correction has no effect of second order.
 TEST_P(Calibration, Holds) {
   const auto [name, metric] = GetParam();
   const auto& one = *std::ranges::find_if(cases(), [&](const Case& each) { return std::string(each.name) == name; });

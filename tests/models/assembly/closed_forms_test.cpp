@@ -5,16 +5,16 @@
 #include "engine/linalg/decompositions.h"
 #include "tests/models/assembly/made.h"
 
-// Assemblies whose displacements and forces are known without this program's equations.
+// Assemblies whose displacements and forces have closed forms.
 namespace poesy::assembly {
 namespace {
 
-constexpr double kRounding = 1e-15;  ///< of the largest value of its kind
-/// The same for the rods: the compliance of a slender rod along itself is 1/1000 of that across, of which it is what is
-/// left, so three digits are lost.
+constexpr double kRounding = 1e-15;  ///< tolerance, relative to the largest value of its kind
+/// Tolerance for slender rods. The axial compliance is 1/1000 of the transverse one and is computed as a difference, so
+/// three digits are lost.
 constexpr double kOfRods = 1e-13;
 
-/// Without loads.
+/// The model of a mechanism file without its loads.
 AssemblyModel unloaded(const std::string& text, Metric metric) {
   AssemblyModel model = made(text, metric);
   model.assembly.load = {};
@@ -67,7 +67,7 @@ frame = "A"
 component = "delta_x"
 )";
 
-/// A rod of the table above between two hinges, which stands at this x.
+/// The text of a limb: a rod between two hinges at this x.
 std::string rod(const std::string& x, bool driven) {
   return "\n[[limb]]\njoints = [\n  { name = \"A\", type = \"R\", at = [" + x +
          ", 0, 0], axis = \"y\", reaction = true" + (driven ? ", actuated = true" : "") +
@@ -85,7 +85,7 @@ TEST(AssemblyClosedForms, ThreeRodsSideBySide) {
   const std::vector<double> by_outer{1.0, -2.0, 1.0};
   for (const auto& [name, factor] : std::map<std::string, double>{{"rod_1", 1.0}, {"rod_2", -2.0}, {"rod_3", 1.0}}) {
     const Answers found = answers(model, {0.0}, named_errors(text, {{name, d}}), kFirstOrder);
-    for (std::size_t k = 0; k < 3; ++k) {  // the hinge's x is along the rod: positive pushes
+    for (std::size_t k = 0; k < 3; ++k) {  // the hinge's x axis is along the rod: a positive fx pushes
       EXPECT_NEAR(found["reaction_A_" + std::to_string(k + 1) + "_fx"], factor * by_outer[k] * force, kOfRods * force)
           << name << ", rod " << k + 1;
       EXPECT_NEAR(found["reaction_A_" + std::to_string(k + 1) + "_fy"], 0.0, kOfRods * force);
@@ -102,7 +102,8 @@ TEST(AssemblyClosedForms, AParallelogramWithARodTooLong) {
   const double x = 0.05;
   for (const Metric metric : kMetrics) {
     const Answers found = answers(made(text, metric), {x}, named_errors(text, {{"rod_2", d}}), kExact);
-    // The rod that is driven has its end at B, where the coupler begins; the other end is on two circles.
+    // The driven rod ends at B, where the coupler begins. The other end of the coupler is the intersection of two
+    // circles.
     const Eigen::Vector2d B(x, std::sqrt(kL * kL - x * x));
     const Eigen::Vector2d to = Eigen::Vector2d(kW, 0.0) - B;
     const double along = (to.squaredNorm() + kW * kW - (kL + d) * (kL + d)) / (2.0 * to.norm());
@@ -116,7 +117,8 @@ TEST(AssemblyClosedForms, AParallelogramWithARodTooLong) {
 
 // ---- a Delta with a rod too long
 
-/// Where six rods hold the platform: base_T_platform by Newton's method on their lengths.
+/// The pose base_T_platform at which six rods with these lengths (m) hold the platform, by Newton's method. ends: in
+/// the base frame; on_platform: in the platform frame (m). at: initial pose.
 Transform held_by(const std::vector<Vector3>& ends, const std::vector<Vector3>& on_platform,
                   const std::vector<double>& lengths, Transform at) {
   for (int n = 0; n < 20; ++n) {
@@ -126,7 +128,7 @@ Transform held_by(const std::vector<Vector3>& ends, const std::vector<Vector3>& 
       const auto i = static_cast<std::size_t>(k);
       const Vector3 arm = at.R * on_platform[i];
       const Vector3 rod = at.p + arm - ends[i];
-      rows.row(k) << arm.cross(rod).transpose(), rod.transpose();  // turns about the platform's origin, and moves it
+      rows.row(k) << arm.cross(rod).transpose(), rod.transpose();  // rotation and translation of the platform
       left[k] = 0.5 * (lengths[i] * lengths[i] - rod.squaredNorm());
     }
     const Eigen::VectorXd step = linalg::solve(rows, left);

@@ -1,5 +1,5 @@
-// Machines that cannot be assembled, where limbs branch: the same ones as where the same mechanism has no bodies
-// between.
+// Tests which machines cannot be assembled if limbs branch at bodies: the same ones as for the same mechanism without
+// intermediate bodies.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::size_t kMachines = 4000;
 
-/// flat-delta with a carriage between rail and rod.
+/// The text of flat-delta with a body, the carriage, between each rail and rod. elastic: whether the drives have a
+/// stiffness.
 std::string branched(bool elastic) {
   std::string text = text_of("flat-delta");
   text.resize(text.find("[[limb]]"));
@@ -62,7 +63,8 @@ struct Outcomes {
   std::vector<double> position;
 };
 
-/// Of machines with normal errors of 0.1 mm at home, the same for every mechanism.
+/// The outcomes at the home pose of machines with normal errors, sigma = 0.1 mm. The errors are the same for every
+/// mechanism.
 Outcomes outcomes(const std::string& text) {
   const std::unique_ptr<Model> model = build(catalog_entry(text, "file.toml"));
   const ModelDescription& description = model->description();

@@ -4,16 +4,17 @@
 
 #include "tests/models/assembly/made.h"
 
-// Machines that grow from the perfect one, against closed forms.
+// Compares solutions that are followed from the perfect machine with closed forms.
 namespace poesy::assembly {
 namespace {
 
-/// Three rods of this length hold the platform of flat-delta, which is this much below their other ends.
+/// Geometry of flat-delta (m): three rods of length kRod hold the platform kBelow below their other ends, at the
+/// horizontal distance kAcross.
 constexpr double kAcross = 0.160;
 constexpr double kBelow = 0.005;
 const double kRod = std::hypot(kAcross, kBelow);
 
-/// Of flat-delta, whose three rods are longer by this.
+/// The solution of flat-delta if its three rods are longer by this (m).
 Solution with_rods(double longer, const SolverOptions& options = kOptions) {
   const std::string text = file::text_of("flat-delta");
   const AssemblyModel model = made(text, Metric::platform);
@@ -34,9 +35,9 @@ TEST(Continuation, FollowsThePlatformOfThreeRods) {
 
 TEST(Continuation, ShortensItsStrides) {
   const Solution near = with_rods(1e-6);
-  EXPECT_LE(near.iterations, 8U);  // one stride, then the last solve
+  EXPECT_LE(near.iterations, 8U);  // one step of the continuation, then the last solve
   EXPECT_EQ(near.steps.size(), near.iterations);
-  const Solution far = with_rods(1e-2);  // the platform is lowered to eleven times its distance from the singularity
+  const Solution far = with_rods(1e-2);  // then the platform is eleven times as far from the singularity
   EXPECT_GT(far.iterations, 2 * near.iterations);
   EXPECT_EQ(far.steps.size(), far.iterations);
 }

@@ -2,11 +2,11 @@
 
 #include "tests/models/assembly/made.h"
 
-// A limb the other way round and a body that cuts a limb are the same mechanism, written in another way.
+// Tests that a mechanism stays the same if a limb is written from its other end, or if a body cuts a limb in two.
 namespace poesy::assembly {
 namespace {
 
-/// The answers but for those whose names begin so.
+/// The answers without those whose names begin with one of these prefixes.
 Answers without(const Answers& all, std::initializer_list<const char*> prefixes) {
   Answers kept{{}, {}, all.reach};
   for (std::size_t r = 0; r < all.values.size(); ++r) {
@@ -18,9 +18,10 @@ Answers without(const Answers& all, std::initializer_list<const char*> prefixes)
   return kept;
 }
 
-// ---- the other way round
+// ---- a limb from its other end
 
-/// The Delta of parallelograms with errors of the right rods, which go from foot to head, or from head to foot.
+/// The text of delta-parallelogram with errors of the right rods. turned: whether the right rods are written from head
+/// to foot.
 std::string parallelograms(bool turned) {
   std::string text = file::text_of("delta-parallelogram");
   const auto put = [&](const std::string& from, const std::string& until, const std::string& to) {
@@ -73,7 +74,7 @@ TEST(AssemblyCuts, ALimbTurnedRoundIsTheSame) {
     const std::vector<double> pose{-0.03, 0.04, 0.16};
     const std::vector<double> errors = random_errors(one, 0.1, 11);
     const Answers wanted = answers(one, pose, errors, kFirstOrder);
-    // The moment is about the other end, and the joint's frame is another.
+    // The moment is then about the other end, and the joint's frame differs.
     const Answers found = without(answers(other, pose, errors, kFirstOrder), {"moment_right", "reaction_B_right"});
     EXPECT_GE(expect_same(found, wanted, 1e-13), 50u);
     if (metric == Metric::platform) continue;
@@ -89,10 +90,10 @@ TEST(AssemblyCuts, ALimbTurnedRoundIsTheSame) {
 
 // ---- a body inserted
 
-/// Where a body cuts the first leg of a table.
+/// Where a body cuts the first leg of the table in two.
 enum class Cut { none, before_screw, behind_screw };
 
-/// A table on four screws. screw, ball: stiffness of the first leg's joints.
+/// The text of a table on four screws. screw, ball: TOML with the stiffness of the first leg's joints.
 std::string table(Cut cut, const std::string& screw, const std::string& ball) {
   const std::string to_nut = cut == Cut::behind_screw ? "to = \"nut\"\n" : "";
   const std::string from_foot = cut == Cut::before_screw ? "from = \"foot\"\n" : "";
@@ -184,8 +185,8 @@ const std::string kScrew =
     R"(, stiffness = { x = "40 N/um", y = "30 N/um", z = "90 N/um", rx = "9000 N m/rad", ry = "8000 N m/rad", rz = "7000 N m/rad" })";
 const std::string kBall = R"(, stiffness = { x = "25 N/um", y = "25 N/um", z = "25 N/um" })";
 
-/// Of the leg that is cut the moment is about another point; and mismatch, of which both parts have a share, is as a
-/// mean square over the loops another number. All else is the same.
+/// The answers that must not change: all except the moment of the cut leg, which is about another point, and the
+/// mismatch, which is divided between both parts of the leg and so has another mean square over the loops.
 Answers comparable(const Answers& all) {
   return without(all, {"moment_leg", "gap", "angular_deformation", "linear_deformation"});
 }
@@ -204,9 +205,9 @@ void expect_cut_same(Cut cut, const std::string& screw, const std::string& ball,
 
 TEST(AssemblyCuts, ABodyInALimbIsNothingToFirstOrder) {
   for (const Metric metric : kMetrics) {
-    expect_cut_same(Cut::behind_screw, kScrew, "", metric, kFirstOrder, 1e-13);     // compliance before it
-    expect_cut_same(Cut::behind_screw, "", kBall, metric, kFirstOrder, 1e-13);      // behind it
-    expect_cut_same(Cut::behind_screw, kScrew, kBall, metric, kFirstOrder, 1e-13);  // shared
+    expect_cut_same(Cut::behind_screw, kScrew, "", metric, kFirstOrder, 1e-13);     // compliance before the cut
+    expect_cut_same(Cut::behind_screw, "", kBall, metric, kFirstOrder, 1e-13);      // behind the cut
+    expect_cut_same(Cut::behind_screw, kScrew, kBall, metric, kFirstOrder, 1e-13);  // on both sides
     expect_cut_same(Cut::before_screw, kScrew, kBall, metric, kFirstOrder, 1e-13);
   }
 }

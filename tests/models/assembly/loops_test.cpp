@@ -3,7 +3,7 @@
 #include "engine/linalg/decompositions.h"
 #include "tests/models/assembly/made.h"
 
-// What errors and mismatches do to N = B^T W B, against differences.
+// Compares the derivatives of N = B^T W B by errors and mismatches with finite differences.
 namespace poesy::assembly {
 namespace {
 
@@ -11,7 +11,8 @@ using Eigen::Index;
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-/// Bodies and joints from the nominal pose on, moved by x (passive joints, then twists of bodies).
+/// An assembly whose bodies and joints were moved from the nominal pose by x: displacements of the passive joints, then
+/// twists of the bodies.
 struct Moved {
   std::vector<Transform> bodies;
   std::vector<double> displacements;

@@ -17,10 +17,10 @@
 #include "models/file/balanced_model.h"
 #include "tests/models/file/files.h"
 
-// Assemblies of mechanism files, random errors of theirs, and what these do.
+// Assemblies of mechanism files, random errors for them, and their responses.
 namespace poesy::assembly {
 
-/// The fidelities.
+/// Short names of the fidelities.
 /// @{
 inline constexpr auto kExact = chain::Fidelity::exact;
 inline constexpr auto kFirstOrder = chain::Fidelity::first_order;
@@ -31,7 +31,7 @@ inline constexpr double kDegree = 0.017453292519943295;
 
 inline const SolverOptions kOptions{.tolerance = chain::kToleranceByMetric};
 
-/// The mechanism of a file's text.
+/// The assembly of a mechanism file with its default geometry. text: content of the file.
 inline AssemblyModel made(const std::string& text, Metric metric) {
   const file::MechanismFile read = file::read_mechanism_file(text, "m.toml");
   const file::Checked found =
@@ -40,7 +40,7 @@ inline AssemblyModel made(const std::string& text, Metric metric) {
                               metric);
 }
 
-/// Errors by name, SI; the others are 0.
+/// All errors of the mechanism (SI): those named, and 0 for the others.
 inline std::vector<double> named_errors(const std::string& text, const std::map<std::string, double>& values) {
   const file::MechanismFile read = file::read_mechanism_file(text, "m.toml");
   const std::vector<Factor> factors = file::mechanism(read, file::default_geometry(read)).factors;
@@ -74,7 +74,7 @@ inline const std::vector<Case>& cases() {
 
 inline constexpr Metric kMetrics[] = {Metric::stiffness, Metric::platform};
 
-/// Normal errors with standard deviations of that many mm and deg.
+/// Random normal errors (SI) with the standard deviation `size` mm or deg.
 inline std::vector<double> random_errors(const AssemblyModel& model, double size, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
@@ -89,9 +89,9 @@ inline std::vector<double> random_errors(const AssemblyModel& model, double size
 struct Answers {
   std::vector<Response> responses;
   std::vector<double> values;
-  double reach;  ///< of the mechanism, m
+  double reach;  ///< reach of the mechanism, m
 
-  /// NaN, and a failure, where there is none of that name.
+  /// The value of the response with this name. If there is none, the test fails and the value is NaN.
   double operator[](const std::string& name) const {
     const auto at = std::ranges::find(responses, name, &Response::name);
     EXPECT_NE(at, responses.end()) << name;
@@ -111,15 +111,15 @@ inline Answers answers(const AssemblyModel& model, const std::vector<double>& po
   return made;
 }
 
-/// Of each dimension the largest value. Lengths and angles, forces and moments are told apart by the reach, because one
-/// of them may be zero and is then the rounding of the other.
+/// The largest magnitude for each dimension. Lengths and angles are compared via the reach, as are forces and moments,
+/// because one of them may be zero except for rounding errors of the other.
 inline std::map<Dimension, double> largest_of(const Answers& all) {
   std::map<Dimension, double> largest;
   for (std::size_t r = 0; r < all.values.size(); ++r) {
     double& most = largest[all.responses[r].dimension];
     most = std::max(most, std::abs(all.values[r]));
   }
-  const auto together = [&](Dimension one, Dimension other) {  // one: the other times the reach
+  const auto together = [&](Dimension one, Dimension other) {  // `one` has the unit of `other` times a length
     largest[one] = std::max(largest[one], all.reach * largest[other]);
     largest[other] = largest[one] / all.reach;
   };
@@ -128,7 +128,8 @@ inline std::map<Dimension, double> largest_of(const Answers& all) {
   return largest;
 }
 
-/// The responses that both have agree to a share of the largest of their kind. Returns how many there are.
+/// Compares the responses that both answers have. tolerance: relative to the largest value of their dimension. Returns
+/// the number of compared responses.
 inline std::size_t expect_same(const Answers& found, const Answers& wanted, double tolerance) {
   std::map<Dimension, double> largest = largest_of(wanted);
   std::size_t compared = 0;
@@ -141,7 +142,7 @@ inline std::size_t expect_same(const Answers& found, const Answers& wanted, doub
   return compared;
 }
 
-/// By Newton's method in plain double arithmetic, with so many iterations at most.
+/// The solution by the plain Newton solver. iterations: the largest allowed number.
 inline Solution solution_of(const AssemblyModel& model, const Nominal& pose, const std::vector<double>& errors,
                             int iterations = kOptions.max_iterations) {
   SolverOptions options = kOptions;

@@ -10,7 +10,7 @@
 #include "models/file/model.h"
 #include "tests/models/file/files.h"
 
-// Mechanisms of tests/data/assembly.json: equations evaluated with 50 digits by another program.
+// Compares mechanisms with tests/data/assembly.json, which another program computed with 50 digits.
 namespace poesy::file {
 namespace {
 
@@ -21,7 +21,7 @@ const json& oracle() {
   return all["mechanisms"];
 }
 
-/// The file's text with another table [load].
+/// The text of a mechanism file with its table [load] replaced.
 std::string with_load(std::string text, const json& load) {
   const std::size_t begin = text.find("\n[load]");
   if (begin != std::string::npos) {
@@ -83,7 +83,7 @@ TEST_P(AssemblyOracle, Mobility) {
   EXPECT_EQ(found.idle, wanted["idle"]);
 }
 
-/// What a model's responses are in the oracle, by name.
+/// The responses in the oracle, by the names that the model gives them.
 std::map<std::string, double> wanted_of(const json& solution, const std::string& metric) {
   std::map<std::string, double> list;
   for (const auto& [name, value] : solution["response"].items()) list[name] = value;
@@ -138,7 +138,7 @@ TEST_P(AssemblyOracle, Responses) {
       for (std::size_t r = 0; r < found.size(); ++r) {
         const Response& response = description.responses[r];
         const auto at = wanted.find(response.name);
-        if (at == wanted.end()) continue;  // norms of bodies' displacements, joints without reaction = true
+        if (at == wanted.end()) continue;  // not in the oracle
         ++compared;
         const bool is_force = response.dimension == Dimension::force || response.dimension == Dimension::moment;
         const double tolerance = is_force                                  ? 1e-10 * largest

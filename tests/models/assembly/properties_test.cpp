@@ -4,7 +4,7 @@
 
 #include "tests/models/assembly/made.h"
 
-// What must not change what errors do to an assembly: units, frames, the order in which things are written.
+// Tests that the effects of errors do not depend on the unit of length, the base frame and the order of the limbs.
 namespace poesy::assembly {
 namespace {
 
@@ -15,7 +15,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-/// Each of the mechanisms, metrics and fidelities.
+/// Calls check(case, metric, fidelity) for all combinations.
 template <class Check>
 void for_each_way(Check check) {
   for (const Case& one : cases()) {
@@ -31,13 +31,14 @@ void for_each_way(Check check) {
 
 // ---- unit of length
 
-/// The file with m in the place of mm, and stiffness in the same proportion: all forces stay as they are.
+/// The mechanism file with m instead of mm, and with stiffness per length divided by 1000, so that all forces stay the
+/// same.
 std::string in_metres(const std::string& text) {
   return replaced(replaced(replaced(replaced(text, " mm", " m"), "N/um", "N/mm"), " N m/rad", " kN m/rad"), "GPa",
                   "kPa");
 }
 
-/// By which factor a quantity is then larger.
+/// The factor by which a quantity of this dimension then grows.
 double factor_of(Dimension dimension) {
   switch (dimension) {
     case Dimension::length:
@@ -71,7 +72,7 @@ TEST(AssemblyProperties, TheUnitOfLengthChangesNothing) {
 
 // ---- base frame
 
-/// The same assembly, seen from a base frame in which everything is moved.
+/// The same assembly described in another base frame: everything is moved by `motion`.
 AssemblyModel moved(AssemblyModel model, const Transform& motion) {
   for (Limb& limb : model.assembly.limbs) {
     if (limb.from == kBase) limb.chain.home.front() = motion * limb.chain.home.front();
@@ -84,7 +85,7 @@ AssemblyModel moved(AssemblyModel model, const Transform& motion) {
   return model;
 }
 
-/// Turns the components of displacements back.
+/// Rotates the components of displacements back by R^T.
 void turn_back(const lie::Matrix3<double>& R, Answers& found) {
   for (const Response& norm : found.responses) {
     if (norm.components.size() != 3) continue;
@@ -100,7 +101,7 @@ TEST(AssemblyProperties, TheBaseFrameChangesNothing) {
   for_each_way([&](const Case& one, Metric metric, chain::Fidelity fidelity) {
     const AssemblyModel model = made(one.text(), metric);
     std::vector<double> errors = random_errors(model, 0.1, 2);
-    for (std::size_t f = 0; f < errors.size(); ++f) {  // errors in the base's axes are others in other axes
+    for (std::size_t f = 0; f < errors.size(); ++f) {  // these errors are along the base's axes, which differ
       const chain::ErrorTerm& term = model.terms[f].front();
       if (term.frame == 0 && model.assembly.limbs[term.limb].from == kBase) errors[f] = 0.0;
     }

@@ -7,16 +7,17 @@
 #include "models/assembly/model.h"
 #include "tests/models/chain/closed_chain.h"
 
-// Random limbs between base and platform as assemblies, with every entry of every frame's error.
+// Assemblies with random limbs between base and platform. All six errors of every frame are errors of the model.
 namespace poesy::assembly {
 
-/// The numbers of joints of their limbs, one of them actuated. All are over-constrained.
+/// The shapes of random assemblies: the number of joints of each limb, one of which is actuated. All are
+/// over-constrained.
 inline const std::vector<std::vector<std::size_t>>& limbs_of_random_assemblies() {
   static const std::vector<std::vector<std::size_t>> all{{3, 3}, {4, 4, 4}, {3, 4, 5}, {3, 3, 3, 3, 3}};
   return all;
 }
 
-/// By the metric of four points scattered about the platform.
+/// A random assembly whose limbs have these numbers of joints. Its metric has four random points on the platform.
 inline AssemblyModel random_assembly(const std::vector<std::size_t>& joints, chain::PassiveJoints kind,
                                      std::mt19937_64& engine) {
   std::size_t count = 0;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kScale = 1000.0;
 
-/// The same assembly in units that are a thousandth, in another base frame.
+/// The same assembly with lengths in mm instead of m, in another base frame.
 AssemblyModel in_other_words(const AssemblyModel& model, const Transform& base) {
   AssemblyModel made = model;
   std::vector<double> q = model.joint_displacements({});
@@ -27,7 +27,7 @@ AssemblyModel in_other_words(const AssemblyModel& model, const Transform& base) 
   return made;
 }
 
-/// Lengths per length stay, lengths per angle are a thousandfold.
+/// Effects of length errors stay the same; effects of angle errors are lengths per angle and become 1000 times larger.
 TEST(AssemblySeparation, DependsOnNoUnitAndNoBaseFrame) {
   std::mt19937_64 engine(43);
   for (const std::vector<std::size_t>& joints : limbs_of_random_assemblies()) {

@@ -1,4 +1,5 @@
-// Samples with one varied error, of which a range is known: they start by series, and end where others end.
+// If one error varies within a known range, samples start from a predicted solution. Tests that they end at the same
+// solution as without a prediction.
 #include <bit>
 
 #include "tests/models/assembly/made.h"
@@ -8,7 +9,7 @@ namespace {
 
 constexpr std::size_t kSamples = 100;
 
-/// One error of many that varies, and small constant errors.
+/// Samples in which one error varies; all other errors are small and constant.
 struct Varied {
   std::vector<double> pose;
   std::vector<double> errors;
@@ -21,7 +22,8 @@ struct Varied {
   }
 };
 
-/// Normal values, of which few are beyond the range, which is two standard deviations.
+/// Samples with normal values of the error `factor`; size: standard deviation (mm or deg). The range is two standard
+/// deviations, so few values are beyond it.
 Varied varied(const Case& one, const AssemblyModel& model, std::size_t factor, double size) {
   const double sigma = size * (model.terms[factor].front().component < 3 ? kDegree : kMillimetre);
   Varied made{one.pose, random_errors(model, 0.05, 5), {FactorIndex(factor)}, {}, 2.0 * sigma};
@@ -79,7 +81,7 @@ TEST(PredictedStarts, LeadToTheSameSolutions) {
   EXPECT_LT(rounds, 0.8 * rounds_without);
 }
 
-/// Neither on other samples of its block, nor on what was solved before.
+/// A predicted start does not depend on the other samples of its block or on earlier blocks.
 TEST(PredictedStarts, DependOnTheSampleAlone) {
   for_each_varied([&](const AssemblyModel& model, const Varied& samples) {
     const Block wanted =

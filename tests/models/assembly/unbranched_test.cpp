@@ -1,5 +1,5 @@
-// Limbs that all lead from the base to the platform, as random as they come: the equation by its definition, what is
-// told of each pair of limbs, and how close to singular they are.
+// Random assemblies whose limbs all lead from the base to the platform. Tests the solved equation by its definition,
+// the details of each pair of limbs, and the condition number.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 using chain::PassiveJoints;
 
-/// What the evaluator gives of one sample.
+/// The outcome of one sample.
 struct Found {
   std::vector<double> responses;
   std::vector<double> details;
@@ -32,7 +32,7 @@ Found evaluate(const AssemblyModel& model, const std::vector<double>& errors, ch
   return found;
 }
 
-/// check(model, errors of a fifth of a mm and deg) for some assemblies of each shape.
+/// Calls check(model, errors) for five random assemblies of each shape. The errors are normal, sigma = 0.1 mm or deg.
 template <class Check>
 void for_each_assembly(unsigned seed, Check check) {
   std::mt19937_64 engine(seed);
@@ -44,7 +44,8 @@ void for_each_assembly(unsigned seed, Check check) {
   }
 }
 
-/// The columns of a limb's passive joints by differences of where it puts the platform.
+/// [6 x passive joints] The spatial Jacobian columns of a limb's passive joints, by finite differences of the platform
+/// pose.
 Eigen::MatrixXd columns_of(const chain::Limb& limb, std::span<const Transform> frames, std::vector<double> q) {
   constexpr double kStep = 1e-5;
   Eigen::MatrixXd columns(6, 0);
@@ -62,7 +63,8 @@ Eigen::MatrixXd columns_of(const chain::Limb& limb, std::span<const Transform> f
   return columns;
 }
 
-/// Where the plain solver ends, W xi is in balance on the platform, and no passive joint feels it.
+/// At the solution of the plain solver, the wrenches W xi of the limbs' mismatches xi balance on the platform and do no
+/// work in passive joints.
 TEST(UnbranchedAssembly, IsWhereTheEquationHolds) {
   for_each_assembly(3, [](const AssemblyModel& model, const std::vector<double>& errors) {
     const Nominal pose = model.at({});
@@ -93,7 +95,8 @@ TEST(UnbranchedAssembly, IsWhereTheEquationHolds) {
 
 class EveryUnbranchedKernel : public test::WithIsa {};
 
-/// Responses and details of a kernel are those of the plain solver: of a pair by where it puts the ends of its limbs.
+/// The responses of a kernel are those of the plain solver. The details of a pair are the mismatch between the ends of
+/// its limbs.
 TEST_P(EveryUnbranchedKernel, TellsOfEachPair) {
   for_each_assembly(5, [](const AssemblyModel& model, const std::vector<double>& errors) {
     const Nominal pose = model.at({});
@@ -113,7 +116,7 @@ TEST_P(EveryUnbranchedKernel, TellsOfEachPair) {
   });
 }
 
-/// To first order the responses of mismatch are norms of the details.
+/// To first order, the deformation responses are norms of the details.
 TEST_P(EveryUnbranchedKernel, HasNormsOfDetails) {
   for_each_assembly(7, [](const AssemblyModel& model, const std::vector<double>& errors) {
     const Found found = evaluate(model, errors, kFirstOrder);
@@ -131,11 +134,12 @@ TEST_P(EveryUnbranchedKernel, HasNormsOfDetails) {
 
 INSTANTIATE_TEST_SUITE_P(Isa, EveryUnbranchedKernel, testing::ValuesIn(test::kEveryIsa), test::isa_name);
 
-/// The condition of how the platform's points are moved by limbs that are compared in pairs, with columns of length 1.
+/// The condition number of the matrix that maps passive joints to displacements of the platform's points, compared in
+/// pairs of limbs. Its columns are normalised; it is computed by finite differences.
 double condition_by_differences(const AssemblyModel& model) {
   const std::vector<double> q = model.joint_displacements({});
   const Transform platform = model.at({}).bodies[kPlatform];
-  std::vector<Eigen::MatrixXd> moved;  // of each limb, three rows for each point
+  std::vector<Eigen::MatrixXd> moved;  // for each limb: [3 points x passive joints]
   Eigen::Index joints = 0;
   std::size_t first = 0;
   for (const Limb& limb : model.assembly.limbs) {
@@ -174,7 +178,7 @@ TEST(ConditionOfAnAssembly, IsOfItsPointsAndPairs) {
       for (const std::vector<std::size_t>& joints : limbs_of_random_assemblies()) {
         const AssemblyModel model = random_assembly(joints, kind, engine);
         const double expected = condition_by_differences(model);
-        if (expected > 1e4) continue;  // differences have no more digits
+        if (expected > 1e4) continue;  // beyond the digits of finite differences
         ++compared;
         EXPECT_NEAR(condition(model, {}) / expected, 1.0, 1e-5) << expected;
       }

@@ -9,7 +9,8 @@
 #include "tests/models/chain/block_samples.h"
 #include "tests/support/isa.h"
 
-// A sample's result depends on nothing but the sample: not on its neighbours, its position or the block's size.
+// Tests that a sample's outcome depends only on the sample, not on the other samples, its position or the size of the
+// block.
 
 namespace poesy::chain {
 namespace {
@@ -18,7 +19,7 @@ constexpr std::size_t kCount = 83;
 
 bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
-/// Sample b of one outcome and sample at of another, in every bit.
+/// Expects that sample b of one outcome and sample `at` of the other have the same bits.
 void expect_same(const BlockOutcome& one, std::size_t b, const BlockOutcome& other, std::size_t at) {
   EXPECT_EQ(one.status[b], other.status[at]) << "sample " << b;
   EXPECT_EQ(one.iterations[b], other.iterations[at]) << "sample " << b;
@@ -37,17 +38,17 @@ std::vector<std::size_t> positions(std::size_t first, std::size_t last) {
   return all;
 }
 
-/// A kind of block that kernels treat differently.
+/// A kind of block. Kernels treat the kinds differently.
 struct Kind {
   const char* name;
   two_upr_rpu::Pose pose;
   bool single;
-  double range;  ///< in standard deviations
-  double size;   ///< of the errors, or of a single error's background, mm and deg
+  double range;  ///< of the predicted starts, in mm or deg; 0: no prediction
+  double size;   ///< sigma of all errors, or of the constant errors around a single one (mm or deg)
 };
 
 constexpr two_upr_rpu::Pose kEasy{-0.25, 0.1, 0.2};
-constexpr two_upr_rpu::Pose kHard{-0.21, 0.5, 0.9};  ///< close to a singular one: samples need every pass
+constexpr two_upr_rpu::Pose kHard{-0.21, 0.5, 0.9};  ///< close to singular: some samples need every pass
 constexpr Kind kKinds[] = {{"single", kHard, true, 0.0, 0.3},
                            {"predicted", kEasy, true, 4.0, 0.1},
                            {"predicted_in_part", kEasy, true, 0.5, 0.1},
@@ -75,7 +76,7 @@ class Lanes : public testing::TestWithParam<std::tuple<const char*, Kind, Solver
     whole_ = solve(samples_, options_);
   }
 
-  /// Solves these samples with one solver, in blocks of this size, and compares them with the whole.
+  /// Solves the samples in this order in blocks of this size, and expects the outcomes of the whole block.
   void expect_whole(std::span<const std::size_t> order, std::size_t block) {
     BlockSolver solver(samples_.chain, options_);
     prepare(solver, samples_);
@@ -147,7 +148,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Lanes,
                                                           SolverOptions::Method::gauss_newton)),
                          lanes_name);
 
-/// Else the tests above would prove little: samples of one block must take different ways.
+/// The tests above are only meaningful if the samples of a block need different numbers of iterations.
 TEST(LaneKinds, DifferInIterations) {
   for (const Kind& kind : kKinds) {
     const BlockOutcome found = solve(samples_of(kind), {});

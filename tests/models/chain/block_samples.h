@@ -13,11 +13,11 @@
 
 namespace poesy::chain {
 
-/// Samples with one pose and background in common, as BlockSolver takes them.
+/// Samples for a BlockSolver. They have the same pose and the same constant errors.
 struct BlockSamples {
   ParallelChain chain;
-  std::vector<double> displacements;       ///< [all joints], nominal
-  std::vector<FrameError<double>> errors;  ///< [frames], constant
+  std::vector<double> displacements;       ///< [all joints] nominal (rad, m)
+  std::vector<FrameError<double>> errors;  ///< [frames] constant errors (rad, m)
   std::vector<FrameEntry> varied;
   double range = 0.0;
   std::size_t count = 0;
@@ -26,7 +26,7 @@ struct BlockSamples {
   double value(std::size_t v, std::size_t b) const { return values[v * count + b]; }
 };
 
-/// What solving gives, sample by sample.
+/// The outcome of each sample.
 struct BlockOutcome {
   Eigen::MatrixXd delta_mu;   ///< [6 pairs x count]
   Eigen::MatrixXd responses;  ///< [3 x count]
@@ -45,7 +45,7 @@ inline std::vector<FrameEntry> factor_entries() {
   return entries;
 }
 
-/// 1 mm or 1 deg.
+/// The unit of an entry of a frame error: 1 mm or 1 deg, in SI.
 inline double unit_of(const FrameEntry& entry) { return entry.component < 3 ? kDegree : kMillimetre; }
 
 inline void fill_normal(BlockSamples& samples, double size, std::size_t count, std::mt19937_64& engine) {
@@ -62,7 +62,8 @@ inline two_upr_rpu::Pose random_pose(std::mt19937_64& engine) {
   return {-0.24 + 0.06 * uniform(engine), 0.5 * uniform(engine), 0.6 * uniform(engine)};
 }
 
-/// The 2UPR-RPU with some of its 71 errors varied, normally with this standard deviation in mm and deg.
+/// Samples of the 2UPR-RPU in which these of its 71 errors vary. size: standard deviation of the normal errors (mm or
+/// deg).
 inline BlockSamples robot_samples(const two_upr_rpu::Pose& pose, std::span<const std::size_t> factors, double size,
                                   std::size_t count, std::mt19937_64& engine) {
   BlockSamples samples;
@@ -76,7 +77,8 @@ inline BlockSamples robot_samples(const two_upr_rpu::Pose& pose, std::span<const
   return samples;
 }
 
-/// One error varied, by 1 mm or 1 deg, over constant others of this size in mm and deg.
+/// Samples of the 2UPR-RPU in which one error varies with sigma = 1 mm or 1 deg. background: sigma of the other errors,
+/// which are constant (mm or deg).
 inline BlockSamples single_error_samples(const two_upr_rpu::Pose& pose, std::size_t factor, double background,
                                          std::size_t count, std::mt19937_64& engine) {
   BlockSamples samples = robot_samples(pose, std::vector<std::size_t>{factor}, 1.0, count, engine);
@@ -94,7 +96,7 @@ inline BlockSamples all_error_samples(const two_upr_rpu::Pose& pose, double size
   return robot_samples(pose, factors, size, count, engine);
 }
 
-/// A random chain with every entry of every frame's error varied.
+/// Samples of a random chain in which all six errors of every frame vary. size: standard deviation (mm or deg).
 inline BlockSamples random_chain_samples(std::span<const std::size_t> joints, PassiveJoints kind, double size,
                                          std::size_t count, std::mt19937_64& engine) {
   BlockSamples samples;
@@ -109,13 +111,13 @@ inline BlockSamples random_chain_samples(std::span<const std::size_t> joints, Pa
   return samples;
 }
 
-/// Largest difference of the residuals of sample b.
+/// The largest difference between both outcomes in the mismatch delta_mu of sample b (rad, m).
 inline double distance(const BlockOutcome& one, const BlockOutcome& other, std::size_t b) {
   const auto column = static_cast<Eigen::Index>(b);
   return (one.delta_mu.col(column) - other.delta_mu.col(column)).cwiseAbs().maxCoeff();
 }
 
-/// The samples of these positions, in this order.
+/// The samples at these positions, in this order.
 inline BlockSamples picked(const BlockSamples& samples, std::span<const std::size_t> positions) {
   BlockSamples some = samples;
   some.count = positions.size();
@@ -126,7 +128,7 @@ inline BlockSamples picked(const BlockSamples& samples, std::span<const std::siz
   return some;
 }
 
-/// Fixed frames of sample b with its errors.
+/// The fixed frames of the chain with the errors of sample b.
 inline std::vector<lie::Transform<double>> frames_of(const BlockSamples& samples, std::size_t b) {
   std::vector<FrameError<double>> errors = samples.errors;
   for (std::size_t v = 0; v < samples.varied.size(); ++v) {
@@ -169,7 +171,7 @@ inline BlockOutcome solve(const BlockSamples& samples, const SolverOptions& opti
   return solve(solver, samples);
 }
 
-/// The same, one at a time, by the plain Gauss-Newton solver.
+/// Solves the samples one by one with the plain Gauss-Newton solver. The outcome has no responses.
 inline BlockOutcome solve_by_reference(const BlockSamples& samples, const SolverOptions& options) {
   DeformationSolver solver(samples.chain, options);
   const auto rows = 6 * static_cast<Eigen::Index>(samples.chain.pairs.size());

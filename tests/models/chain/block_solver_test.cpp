@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Chains of every kind, a few poses or geometries each.
+/// Samples of the 2UPR-RPU at a few poses and of random chains.
 std::vector<BlockSamples> every_chain(std::size_t count) {
   std::mt19937_64 engine(23);
   std::vector<BlockSamples> all;
@@ -42,7 +42,7 @@ TEST_P(EveryKernel, GaussNewtonIsTheReference) {
     const BlockOutcome found = solve(samples, gauss_newton());
     const BlockOutcome truth = solve_by_reference(samples, gauss_newton());
     for (std::size_t b = 0; b < samples.count; ++b, ++total) {
-      // What takes longer may end on either side of the cap.
+      // Samples with more iterations may end on either side of the cap.
       if (truth.iterations[b] >= 40) continue;
       ++compared;
       EXPECT_EQ(solved(found.status[b]), solved(truth.status[b]));
@@ -100,7 +100,7 @@ TEST_P(EveryKernel, PerfectPartsDoNotDeform) {
 TEST_P(EveryKernel, ReportsASingularChain) {
   std::mt19937_64 engine(29);
   BlockSamples samples = robot_samples({-0.24, 0.2, -0.3}, std::vector<std::size_t>{3}, 1.0, 11, engine);
-  // Two passive joints on one axis cannot be told apart.
+  // Two passive joints on the same axis make the equations singular.
   for (Limb& limb : samples.chain.limbs) {
     limb.joints[0] = limb.joints[1] = {JointType::revolute, false};
     limb.home[1] = lie::Transform<double>{};
@@ -190,7 +190,8 @@ void move(const ParallelChain& chain, const Eigen::VectorXd& step, std::vector<d
   }
 }
 
-/// Moves q so that the limbs disagree by what was reported, by damped least squares; returns what is missing.
+/// Moves q by damped least squares so that the residual of the limbs becomes the reported one. Returns the largest
+/// remaining difference.
 double attain(const ParallelChain& chain, std::span<const lie::Transform<double>> frames,
               const Eigen::VectorXd& reported, std::vector<double>& q) {
   double damping = 1e-2;
@@ -212,8 +213,8 @@ double attain(const ParallelChain& chain, std::span<const lie::Transform<double>
   return excess.cwiseAbs().maxCoeff();
 }
 
-/// Displacements at which the limbs disagree by what was reported, found from that alone: from nominal displacements,
-/// or else from random ones.
+/// Joint displacements at which the limbs have the reported residual. The search starts from the nominal displacements,
+/// then from random ones.
 std::vector<double> displacements_of(const BlockSamples& samples, std::size_t b, const Eigen::VectorXd& reported) {
   const auto frames = frames_of(samples, b);
   std::mt19937_64 engine(71);
@@ -226,13 +227,14 @@ std::vector<double> displacements_of(const BlockSamples& samples, std::size_t b,
   return q;
 }
 
-/// Where Newton says that it found a root, by the definition alone: the residual is attained, J^T delta_mu vanishes.
+/// Expects that the solution found by Newton is a root by definition: its residual can be attained, and J^T delta_mu
+/// vanishes there. Returns the joint displacements.
 std::vector<double> expect_root(const BlockSamples& samples, std::size_t b, const BlockOutcome& found) {
   const Eigen::VectorXd reported = found.delta_mu.col(static_cast<Eigen::Index>(b));
   const std::vector<double> q = displacements_of(samples, b, reported);
   const auto frames = frames_of(samples, b);
   EXPECT_LE((reported - residual(samples.chain, frames, q)).cwiseAbs().maxCoeff(), 1e-14);
-  // A last step is shorter than sqrt(tolerance / 10), and leaves a few times its square.
+  // The last step is shorter than sqrt(tolerance / 10). The remaining error is a few times its square.
   EXPECT_LE((jacobian(samples.chain, frames, q).transpose() * reported).cwiseAbs().maxCoeff(), 2e-12);
   return q;
 }
@@ -248,7 +250,7 @@ TEST_P(EveryKernel, NewtonEndsAtAFixedPointOfTheDefinition) {
   }
 }
 
-/// The derivative of -J^T delta_mu by differences.
+/// The derivative of -J^T delta_mu by the passive joints, by finite differences.
 Eigen::MatrixXd derivative(const ParallelChain& chain, std::span<const lie::Transform<double>> frames,
                            const std::vector<double>& q) {
   constexpr double kStep = 1e-4;
@@ -313,7 +315,8 @@ TEST(Kernels, WithFusedMultiplyAddAgreeInEveryBit) {
 }
 
 TEST(Kernels, AgreeWithThePlainOne) {
-  // Samples that Newton solves directly, in at most 12 iterations: elsewhere rounding may choose another pass.
+  // Compares samples that Newton solves in at most 12 iterations. For others, rounding may select another pass of the
+  // kernel.
   constexpr std::uint32_t kDirect = 12;
   for (const char* isa : {"avx2", "avx512", "neon"}) {
     if (!test::machine_has(isa)) continue;

@@ -10,8 +10,9 @@ namespace poesy::chain {
 
 enum class PassiveJoints { revolute, mixed };
 
-/// Random limbs of so many joints each, one of them actuated, whose platform frames coincide at the
-/// displacements q [all joints]: the last frame of each is chosen so. Compared in pairs around the platform.
+/// A chain of random limbs with these numbers of joints, one of them actuated in each limb. The last frames of the
+/// limbs are chosen so that the platform frames coincide at the displacements q [all joints]. Neighbouring limbs form
+/// the pairs.
 inline ParallelChain closed_chain(std::span<const std::size_t> joints, PassiveJoints kind, std::span<const double> q,
                                   std::mt19937_64& engine) {
   ParallelChain chain;
@@ -34,7 +35,7 @@ inline ParallelChain closed_chain(std::span<const std::size_t> joints, PassiveJo
   return chain;
 }
 
-/// The residual of all pairs, computed without a solver.
+/// [6 pairs] The residual of all pairs, computed from the definition.
 inline Eigen::VectorXd residual(const ParallelChain& chain, std::span<const lie::Transform<double>> frames,
                                 std::span<const double> q) {
   std::vector<lie::Transform<double>> poses;
@@ -53,7 +54,8 @@ inline Eigen::VectorXd residual(const ParallelChain& chain, std::span<const lie:
   return all;
 }
 
-/// J of Eq. 43 by its definition: a passive joint's spatial motion enters pair (k, i) with + in limb i and - in limb k.
+/// The matrix J of Du et al. 2022, Eq. 43, by its definition: the spatial screw of a passive joint counts in pair (k,
+/// i) with +1 if it is in limb i and with -1 if it is in limb k.
 inline Eigen::MatrixXd jacobian(const ParallelChain& chain, std::span<const lie::Transform<double>> frames,
                                 std::vector<double> q) {
   Eigen::MatrixXd j = Eigen::MatrixXd::Zero(6 * static_cast<Eigen::Index>(chain.pairs.size()),

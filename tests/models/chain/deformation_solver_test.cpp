@@ -10,7 +10,7 @@
 namespace poesy::chain {
 namespace {
 
-/// Limbs of revolute joints whose platform frames coincide at displacement zero.
+/// A chain of limbs with revolute joints. The platform frames coincide if all displacements are zero.
 ParallelChain closed_chain(std::size_t limbs, std::size_t joints, std::mt19937_64& engine) {
   const std::vector<double> zero(limbs * joints, 0.0);
   return closed_chain(std::vector<std::size_t>(limbs, joints), PassiveJoints::revolute, zero, engine);
@@ -143,7 +143,7 @@ TEST_F(Scheme1, ReportsNonFiniteErrors) {
 }
 
 TEST_F(Scheme1, ReportsASingularChain) {
-  // Two passive joints on one axis cannot be told apart.
+  // Two passive joints on the same axis make the equations singular.
   for (Limb& limb : chain_.limbs) {
     limb.joints[0] = limb.joints[1] = {JointType::revolute, false};
     limb.home[1] = lie::Transform<double>{};

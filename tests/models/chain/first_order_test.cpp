@@ -21,7 +21,7 @@ Matrix6 random_metric(std::mt19937_64& engine) {
   return metric_of_points(points);
 }
 
-/// ln det(J^T W J), by definition.
+/// ln det(J^T W J), by its definition. W: the metric of each pair.
 double log_of_determinant(const ParallelChain& chain, std::span<const lie::Transform<double>> frames,
                           const std::vector<double>& q, const Matrix6& W) {
   const Eigen::MatrixXd J = jacobian(chain, frames, q);
@@ -30,7 +30,7 @@ double log_of_determinant(const ParallelChain& chain, std::span<const lie::Trans
   return std::log(N.determinant());
 }
 
-/// With this much of an entry, where the passive joints have given way in proportion.
+/// ln det(J^T W J) with this error of one frame entry. The passive joints are moved by error x give.
 double log_with_error(const ParallelChain& chain, const std::vector<double>& nominal, const FrameEntry& entry,
                       double error, const std::vector<double>& give, const Matrix6& W) {
   std::vector<lie::Transform<double>> frames;
@@ -76,7 +76,7 @@ TEST(DeterminantSlopes, AreDifferencesOfTheLogarithm) {
   }
 }
 
-/// The 2UPR-RPU and random chains.
+/// Samples of the 2UPR-RPU and of random chains. size: standard deviation of the errors (mm or deg).
 std::vector<BlockSamples> every_chain(std::size_t count, double size) {
   std::mt19937_64 engine(7);
   std::vector<BlockSamples> all;
@@ -90,7 +90,7 @@ std::vector<BlockSamples> every_chain(std::size_t count, double size) {
   return all;
 }
 
-/// By differences of solves: what the joints give way is seen in what they leave.
+/// Compares the first-order effects with finite differences of solves.
 TEST(FirstOrderOfAChain, IsTheDerivativeOfTheSolution) {
   constexpr double kStep = 1e-5;
   for (BlockSamples samples : every_chain(1, 0.0)) {
@@ -116,8 +116,8 @@ TEST(FirstOrderOfAChain, IsTheDerivativeOfTheSolution) {
   }
 }
 
-/// Three of twelve independent mismatches are left to the 2UPR-RPU's nine passive joints: it is over-constrained
-/// thrice.
+/// Example: the 2UPR-RPU has twelve independent mismatches and nine passive joints, so three mismatches remain; it is
+/// over-constrained three times.
 TEST(FirstOrderOfAChain, HasACoordinateForEachConstraintTooMany) {
   for (const BlockSamples& samples : every_chain(1, 0.0)) {
     FirstOrder first_order(samples.chain);

@@ -24,7 +24,7 @@ TEST(MetricOfPoints, IsTheirRootMeanSquareDisplacement) {
     const lie::Screw<double> twist = lie::random_screw(1.0, engine);
     double sum = 0.0;
     for (const Vector3& point : points) {
-      // By differences of the motion itself.
+      // The velocity of the point by finite differences of the motion.
       constexpr double kStep = 1e-6;
       const auto moved = [&](double t) -> Vector3 {
         const auto g = lie::exp(lie::Screw<double>(t * twist));

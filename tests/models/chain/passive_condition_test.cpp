@@ -18,8 +18,8 @@ std::vector<lie::Transform<double>> home_frames(const ParallelChain& chain) {
   return frames;
 }
 
-/// By finite differences of the limbs' poses: columns of prismatic joints times the unit of length, rows of
-/// translations divided by it.
+/// The condition number of the Jacobian from its definition. Columns of prismatic joints are multiplied by the reach,
+/// rows of translations are divided by it.
 double condition_by_differences(const ParallelChain& chain, const std::vector<double>& q) {
   Eigen::MatrixXd j = jacobian(chain, home_frames(chain), q);
   for (Eigen::Index pair = 0; pair < j.rows() / 6; ++pair) j.middleRows(6 * pair + 3, 3) /= chain.reach();
@@ -42,7 +42,7 @@ ParallelChain scaled(ParallelChain chain, double factor) {
   return chain;
 }
 
-/// Displacements of a chain that is a thousand times as large.
+/// The displacements q for a chain that is 1000 times larger: those of prismatic joints grow.
 std::vector<double> longer(const ParallelChain& chain, std::vector<double> q) {
   std::size_t joint = 0;
   for (const Limb& limb : chain.limbs) {
@@ -63,7 +63,7 @@ TEST_P(PassiveCondition, IsThatOfTheJacobianByDifferences) {
     const std::vector<double> q = random_displacements(12, 0.8, engine);
     const ParallelChain chain = closed_chain(joints, GetParam(), q, engine);
     const double expected = condition_by_differences(chain, q);
-    if (expected > 1e4) continue;  // differences have no more digits
+    if (expected > 1e4) continue;  // beyond the digits of finite differences
     EXPECT_NEAR(passive_condition(chain, q) / expected, 1.0, 1e-5) << expected;
   }
 }

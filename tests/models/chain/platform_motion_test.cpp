@@ -13,7 +13,7 @@ namespace {
 
 using Vector3 = lie::Vector3<double>;
 
-/// A random chain with helical joints, every error of its frames a factor.
+/// A random chain with helical joints. All six errors of each frame are errors of the model.
 struct Example {
   std::vector<double> q;
   DeformationModel model;
@@ -25,7 +25,7 @@ Example example(const std::vector<std::size_t>& joints, std::mt19937_64& engine)
   Example one{random_displacements(all, 0.4, engine), {}};
   one.model.chain = closed_chain(joints, PassiveJoints::mixed, one.q, engine);
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    // A helical joint that is at its home: the chain stays closed.
+    // The first passive joint becomes a helical joint with displacement zero, so the chain stays closed.
     Limb& limb = one.model.chain.limbs[i];
     const std::size_t first =
         static_cast<std::size_t>(std::ranges::find(limb.joints, false, &Joint::actuated) - limb.joints.begin());
@@ -44,7 +44,8 @@ Example example(const std::vector<std::size_t>& joints, std::mt19937_64& engine)
   return one;
 }
 
-/// x, y, z, theta, position, rotation and the tool's displacement, by the plain solver and Lie algebra's definitions.
+/// The expected responses x, y, z, theta, position, rotation and displacement of the tool, from the plain solver and
+/// the definitions with log and exp.
 std::vector<double> truth_of(const Example& one, std::span<const double> errors) {
   const ParallelChain& chain = one.model.chain;
   std::vector<lie::Transform<double>> frames;
@@ -77,7 +78,7 @@ std::vector<double> truth_of(const Example& one, std::span<const double> errors)
           origin.norm(), theta.norm(), tip.x(),    tip.y(),   tip.z(),   tip.norm()};
 }
 
-constexpr std::size_t kDeformations = 3;  ///< responses before those of the platform
+constexpr std::size_t kDeformations = 3;  ///< number of responses before those of the platform
 
 struct Outcome {
   std::vector<double> responses;

@@ -7,7 +7,7 @@
 
 namespace poesy::chain {
 
-/// A limb of random frames, with revolute and prismatic, passive and actuated joints mixed.
+/// A random limb. Its joints are revolute or prismatic, passive or actuated.
 inline Limb random_limb(std::size_t joints, std::mt19937_64& engine) {
   Limb limb;
   for (std::size_t j = 0; j < joints; ++j) {
@@ -25,7 +25,7 @@ inline std::vector<double> random_displacements(std::size_t count, double size, 
   return q;
 }
 
-/// Platform pose by a limb without looking at its Jacobian.
+/// The platform pose of a limb, without its Jacobian.
 inline lie::Transform<double> platform_pose(const Limb& limb, std::span<const lie::Transform<double>> frames,
                                             std::span<const double> q) {
   return forward_kinematics<double>(limb, frames, q, [](std::size_t, const lie::Screw<double>&) {});

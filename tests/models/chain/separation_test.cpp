@@ -19,7 +19,7 @@ struct Example {
   DeformationModel model;
 };
 
-/// A random chain whose platform is measured, every error of its frames a factor.
+/// A random chain with points on its platform. All six errors of each frame are errors of the model.
 Example example(const std::vector<std::size_t>& joints, std::mt19937_64& engine) {
   std::size_t all = 0;
   for (const std::size_t n : joints) all += n;
@@ -35,7 +35,7 @@ Example example(const std::vector<std::size_t>& joints, std::mt19937_64& engine)
   return one;
 }
 
-/// At the displacements that the example has.
+/// The separation of the example at its joint displacements.
 Separation separate(Example& one) {
   one.model.joint_displacements = [&one](std::span<const double>) { return one.q; };
   return separation(one.model, {});
@@ -43,10 +43,11 @@ Separation separate(Example& one) {
 
 const std::vector<std::vector<std::size_t>> kShapes{{4, 4}, {4, 4, 4}, {5, 5, 5}, {5, 5, 5, 5}, {6, 5, 4}};
 
-/// How each factor [F] displaces the points, over the root of their number, by the kernels: [3 x points, F].
+/// [3 points x errors] The displacements of the platform's points per unit of each error, divided by the square root of
+/// the number of points. Computed by the first-order kernel.
 Eigen::MatrixXd displacements_of(const Example& one) {
   const std::size_t factors = one.model.terms.size();
-  constexpr std::size_t before = 3;  // responses before those of the platform
+  constexpr std::size_t before = 3;  // number of responses before those of the platform
   std::vector<FactorIndex> varied;
   for (std::size_t f = 0; f < factors; ++f) varied.emplace_back(f);
   const Eigen::MatrixXd units =
@@ -73,7 +74,7 @@ Eigen::MatrixXd displacements_of(const Example& one) {
   return displacements / std::sqrt(static_cast<double>(points.size()));
 }
 
-/// The factors that do what a unit of each drive does: errors along its axis of the frame behind it.
+/// For each drive, the error with the same effect: the error along or about the drive's axis of the frame after it.
 std::vector<Eigen::Index> drives_of(const DeformationModel& model) {
   std::vector<Eigen::Index> list;
   for (std::size_t f = 0; f < model.terms.size(); ++f) {
@@ -110,14 +111,16 @@ TEST(ChainSeparation, ResidualIsWhatNoCorrectionTakesAway) {
   }
 }
 
-/// Twist of a limb's platform by a number that its pose depends on, by differences.
+/// The twist of a limb's platform per unit of a parameter, by finite differences. pose_at: the platform pose as a
+/// function of the parameter.
 template <class PoseAt>
 Screw twist_by(PoseAt&& pose_at) {
   constexpr double kStep = 1e-5;
   return lie::log<double>(pose_at(kStep) * pose_at(-kStep).inverse()) / (2.0 * kStep);
 }
 
-/// A limb of an example, with motions of its platform weighed as its own end sees them.
+/// A limb of an example. Twists of its platform are weighted: the rotation times the radius of the platform's points,
+/// and the translation of the limb's last joint.
 struct OwnLimb {
   const Limb& limb;
   std::span<const double> q;
@@ -156,7 +159,7 @@ struct OwnLimb {
                    }));
   }
 
-  /// Of all its joints.
+  /// [6 x joints] The weighted twists per unit displacement of each joint.
   Eigen::MatrixXd by_joints() const {
     Eigen::MatrixXd columns(6, static_cast<Eigen::Index>(q.size()));
     for (std::size_t j = 0; j < q.size(); ++j) {
@@ -192,7 +195,7 @@ TEST(ChainSeparation, DrivePartIsInTheNearestMotionOfTheLimbsOwnJoints) {
   }
 }
 
-/// A drive that is held in the place of one that moves: nothing can be corrected by it.
+/// A fixed drive cannot correct anything.
 TEST(ChainSeparation, FixedFramesCorrectNothing) {
   std::mt19937_64 engine(42);
   Example one = example({5, 5, 5}, engine);
@@ -217,7 +220,7 @@ TEST(ChainSeparation, SingularPoseIsOpen) {
   Example one = example({5, 5, 5}, engine);
   Limb& limb = one.model.chain.limbs[2];
   limb.joints[3] = limb.joints[4] = {JointType::prismatic, false};
-  limb.home[4] = {};  // both slide along one line
+  limb.home[4] = {};  // both joints slide along the same line
   const Separation found = separate(one);
   for (const auto part : {&Separation::drive, &Separation::constraint, &Separation::effect, &Separation::residual}) {
     ASSERT_EQ((found.*part).size(), one.model.terms.size());

@@ -5,7 +5,8 @@
 #include "models/file/model.h"
 #include "tests/models/file/files.h"
 
-// Wrong files with bodies, stiffness and loads: each is refused with its place, the key, the rule and a remedy.
+// Wrong mechanism files with bodies, stiffness and loads. Each is refused with the place, the key, the rule and a
+// remedy.
 namespace poesy::file {
 namespace {
 
@@ -87,14 +88,14 @@ frame = "B"
 component = "delta_x"
 )";
 
-/// A wrong file: a part of a right one, what is put in its place, and the message.
+/// A wrong file: in the valid file, `from` is replaced by `to`; it must be refused with `message`.
 struct Wrong {
   std::string from;
   std::string to;
   std::string message;
 };
 
-/// What reading says of the text.
+/// The message with which the text is refused. "read" if it is accepted.
 std::string problem_of(const std::string& text) {
   try {
     catalog_entry(text, "m.toml");
@@ -577,7 +578,7 @@ TEST(BranchedFile, NamesBodiesThatNothingHolds) {
              });
 }
 
-/// The text of a file of tests/data with something else in each place where this stands.
+/// The text with every `from` replaced by `to`.
 std::string with_all(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
     text.replace(at, from.size(), to);
@@ -588,7 +589,7 @@ std::string with_all(std::string text, const std::string& from, const std::strin
 TEST(BranchedFile, NamesRigidLimbsThatOverConstrainEachOther) {
   const std::string table = text_of("lift-table");
   const std::string drive = ", stiffness = { z = \"90 N/um\" }";
-  // One leg that gives way is enough for four, but not if it does so sideways.
+  // One elastic leg of four is enough, but not if it is elastic only sideways.
   const std::size_t first = table.find(drive) + drive.size();
   const std::string one = table.substr(0, first) + with_all(table.substr(first), drive, "");
   EXPECT_EQ(problem_of(one), "read");
@@ -597,7 +598,7 @@ TEST(BranchedFile, NamesRigidLimbsThatOverConstrainEachOther) {
               "m.toml:25:3: limbs 1, 2, 3 and 4 are rigid in some directions, in which they over-constrain each other; "
               "give links or joints stiffness, because rigid parts do not tell how large their forces are");
   }
-  // The rods of each parallelogram, one by one.
+  // The rigid rods of a parallelogram are named as a pair of limbs.
   const std::string links = text_of("delta-parallelogram");
   EXPECT_EQ(problem_of(with_all(with_all(links, "links  = [ { from = \"foot\"", "#"), "{ from = \"B\"", "#")),
             "m.toml:44:3: limbs left_1 and right_1 are rigid and over-constrain each other; give links or joints "

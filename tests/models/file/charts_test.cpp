@@ -23,7 +23,7 @@ std::vector<std::string> names_of(const Chart& chart) {
   return list;
 }
 
-/// Positions of the chart's joints, the first of each drive, among all that move.
+/// For each coordinate of the chart, the index of its drive's first joint among all moving joints.
 std::vector<std::size_t> places_of(const Chart& actuators, const Mechanism& mechanism) {
   const std::vector<Drive> drives = drives_of(mechanism);
   std::vector<std::size_t> list;
@@ -33,7 +33,7 @@ std::vector<std::size_t> places_of(const Chart& actuators, const Mechanism& mech
   return list;
 }
 
-/// The chart's coordinates of a configuration.
+/// The coordinates of a configuration in the chart.
 std::vector<double> in_chart(const Chart& chart, const Mechanism& mechanism, const Tracked& there) {
   std::vector<double> list;
   if (chart.description().name == "actuators") {
@@ -47,7 +47,8 @@ std::vector<double> in_chart(const Chart& chart, const Mechanism& mechanism, con
   return list;
 }
 
-/// Angles without whole turns: a screw that has turned often takes the joints beside it along, or not.
+/// The largest difference between two configurations (rad, and lengths divided by the reach). Whole turns of revolute
+/// joints do not count, because a screw may have carried neighbouring joints along.
 double apart(const Mechanism& mechanism, std::span<const double> a, std::span<const double> b) {
   double largest = 0.0;
   std::size_t k = 0;
@@ -130,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
-/// The file with every `from` written as `to`.
+/// The mechanism of a file with every `from` replaced by `to`.
 Mechanism changed(const std::string& name, const std::string& from, const std::string& to) {
   std::string text = text_of(name);
   std::size_t at = text.find(from);
@@ -154,7 +155,8 @@ TEST(ChartsOf, AreThoseThatDetermineThePose) {
   EXPECT_EQ(charts_of(changed("3-rrr", "phi =", "q_1_1 =")).size(), 0u) << "the name is taken";
 }
 
-/// One number a motor; where each carriage is, a sphere about its rods' ends: the platform lies on all three.
+/// The chart has one number for each motor. Each carriage is the centre of a sphere with the rod length as radius; the
+/// platform is on all three spheres.
 TEST(ChartsOf, HaveANumberForEachDrive) {
   const Mechanism mechanism = from_file("delta6");
   const std::vector<Chart> charts = charts_of(mechanism);
@@ -175,8 +177,8 @@ TEST(ChartsOf, HaveANumberForEachDrive) {
   }
 }
 
-/// The smallest singular value of the platform's equations of 3-RRR with its drives held, by hand: every point C turns
-/// about its elbow B, so it moves at right angles to the line B C.
+/// The smallest singular value of the platform's equations of the 3-RRR with locked drives, computed by hand: each
+/// point C turns about its elbow B, so its velocity is perpendicular to B C.
 double holding(const Mechanism& mechanism, const Tracked& there) {
   Eigen::MatrixXd rows(3, 3);
   std::size_t begin = 0;
@@ -194,7 +196,7 @@ double holding(const Mechanism& mechanism, const Tracked& there) {
   return Eigen::JacobiSVD<Eigen::MatrixXd>(rows).singularValues()[2];
 }
 
-/// On which side of the line from the base to the platform each elbow of 3-RRR is.
+/// For each limb of the 3-RRR, on which side of the line from base to platform its elbow is.
 std::vector<bool> elbows(const Mechanism& mechanism, const Tracked& there) {
   std::vector<bool> list;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -207,8 +209,8 @@ std::vector<bool> elbows(const Mechanism& mechanism, const Tracked& there) {
   return list;
 }
 
-/// Drives far from home: the way ends where they no longer hold the platform, or an elbow has gone over to the other
-/// side, or the pose is that of the same numbers.
+/// Drive positions far from home. Either the path from home ends where the drives no longer hold the platform, or an
+/// elbow has changed sides, or the found pose belongs to these drive positions.
 TEST(Actuators, AreRefusedWithTheWayThatTheyGot) {
   const Mechanism mechanism = from_file("rrr3");
   const std::vector<Chart> charts = charts_of(mechanism);
@@ -246,7 +248,7 @@ TEST(Actuators, AreRefusedWithTheWayThatTheyGot) {
   EXPECT_GT(reached, 5u);
 }
 
-/// A crank of 50 mm that lies along x, its rod to a slider at (150 mm, 40 mm); the tool is the crank pin.
+/// A crank of 50 mm along x, with a rod from the crank pin to a slider at (150 mm, 40 mm). The tool is the crank pin.
 constexpr const char* kCrankSlider = R"(
 format = "poesy-mechanism"
 version = 1
@@ -275,7 +277,8 @@ TEST(CrankSlider, IsWhereTheCrankPutsItButNotWhereThePinCannotGo) {
   ASSERT_EQ(charts.size(), 2u);
   for (const double turned : {-0.4, -0.1, 0.2, 0.9}) {
     const Tracked found = find(charts, "actuators")->track(std::vector{turned});
-    // Beyond the dead point, at 0.26, the slider is where it was on the other side of it.
+    // The dead point is at 0.26 rad. Beyond it the slider returns to positions that it already had, in another working
+    // mode.
     const bool beyond = found.unreachable.find("another working mode") != std::string::npos;
     EXPECT_EQ(beyond, turned > 0.26);
     ASSERT_EQ(found.unreachable.empty(), !beyond) << found.unreachable;
@@ -284,7 +287,7 @@ TEST(CrankSlider, IsWhereTheCrankPutsItButNotWhereThePinCannotGo) {
     EXPECT_NEAR(found.pose[0], x, 1e-14);
     EXPECT_NEAR(found.pose[1], 0.04, 1e-14);
   }
-  // The pin starts at right angles to x, so its x does not say where the slider goes.
+  // At home the pin moves perpendicular to x, so the x of the pin does not determine the motion.
   const Tracked along = find(charts, "tip")->track(std::vector{0.049});
   EXPECT_LT(along.share, 0.01);
   EXPECT_NE(along.unreachable.find("one coordinate depends on the others"), std::string::npos) << along.unreachable;

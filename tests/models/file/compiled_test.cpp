@@ -1,4 +1,4 @@
-// The compiled mechanisms against their files: the same errors at the same poses.
+// Compares the compiled mechanisms with the same mechanisms from files, for the same errors and poses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace poesy {
 namespace {
 
 constexpr std::size_t kPoses = 500;
-constexpr std::size_t kSamples = 200;  ///< at each pose: 100 000 cases
+constexpr std::size_t kSamples = 200;  ///< at each pose, so there are 100 000 cases
 
 CatalogEntry from_gallery(const std::string& name) {
   const std::string path = POESY_TEST_DATA "/../../results/gallery/" + name + "/" + name + ".toml";
@@ -29,7 +29,7 @@ std::unique_ptr<Model> build(const CatalogEntry& entry, std::size_t fidelity) {
   return entry.build(geometry, fidelity);
 }
 
-/// All errors of all samples, normal: 1 mm and 1 mrad.
+/// [errors x kSamples] Normal errors with sigma = 1 mm or 1 mrad.
 std::vector<double> draw_errors(std::size_t errors, std::mt19937_64& engine) {
   std::normal_distribution<double> normal(0.0, 1e-3);
   std::vector<double> values(errors * kSamples);
@@ -45,7 +45,7 @@ std::vector<double> draw_pose(const ModelDescription& model, std::mt19937_64& en
   return pose;
 }
 
-/// The rows of one mechanism's errors [F x kSamples] in the order of the other's factors, by their names.
+/// The rows of errors [errors x kSamples] of the mechanism `from` in the order of the errors of `to`, matched by name.
 std::vector<double> reordered(const std::vector<double>& values, const ModelDescription& from,
                               const ModelDescription& to) {
   std::vector<double> rows;
@@ -72,15 +72,15 @@ Outcomes solve(Evaluator& evaluator, const ModelDescription& model, std::span<co
   return outcomes;
 }
 
-/// What differs in how many cases.
+/// Counts of the differences between two mechanisms.
 struct Differences {
   std::size_t cases = 0;
-  std::size_t unsolved = 0;   ///< by either
-  std::size_t responses = 0;  ///< beyond the tolerance, where both solved
-  double largest = 0.0;       ///< of them, SI
+  std::size_t unsolved = 0;   ///< cases that one or both did not solve
+  std::size_t responses = 0;  ///< responses beyond the tolerance, if both solved
+  double largest = 0.0;       ///< the largest of these differences, SI
 };
 
-/// relative, or absolute (SI), whichever is larger.
+/// A tolerance: the larger of the relative and the absolute (SI) one.
 struct Within {
   double relative;
   double absolute;
@@ -146,7 +146,7 @@ TEST(CompiledAndFile, ThreePrsIsTheSame) {
   const CatalogEntry file = from_gallery("3-prs");
   const CatalogEntry& compiled = *find(registry(), "3-prs");
   expect_none(compare(compiled, file, 1, {}, kClose));
-  // The compiled one solves nine equations and the file's fifteen: their rounding differs.
+  // The compiled mechanism solves nine equations and the one from the file fifteen, so their rounding errors differ.
   expect_none(compare(compiled, file, 0, {}, {1e-11, 2e-14}));
 }
 

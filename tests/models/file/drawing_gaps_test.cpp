@@ -21,7 +21,7 @@ Mechanism read(const std::string& text) {
   return mechanism(file, default_geometry(file));
 }
 
-/// The Delta's file without the feature of this name.
+/// The text of the Delta's file without this feature.
 std::string without(const std::string& feature) {
   std::string text = text_of(kName);
   const std::size_t begin = text.find("  { name = \"" + feature + "\"");
@@ -50,7 +50,7 @@ TEST(DrawingGaps, GrowByWhatAFeatureSaid) {
   Clauses more = uncovered();
   more.insert(more.begin() + 3, "limbs 1 to 3, between B and C (frame 4): displacement along x has no tolerance");
   EXPECT_EQ(uncovered_directions(read(without("rod"))), more);
-  EXPECT_EQ(uncovered_directions(read(without("zero"))), uncovered());  // the hinge's position says it as well
+  EXPECT_EQ(uncovered_directions(read(without("zero"))), uncovered());  // the hinge's position covers it too
   more = uncovered();
   more[2] =
       "limbs 1 to 3, between q and B (frame 2): displacement along x and y and turn about x and z have no tolerance";
@@ -72,7 +72,7 @@ TEST(DrawingGaps, ASizeFarFromTheLengthOfItsPartIsDoubtful) {
   }
 }
 
-/// A feature without a zone has no tolerance, and an error that the file states has one.
+/// A feature without a zone counts as a gap. An error that the file states closes the gap.
 TEST(DrawingGaps, AreWithoutZonesAndStatedErrors) {
   const std::string rod = "direction = [\"r - R\", 0, \"-h\"], tolerance = \"0.02 mm\"";
   const std::string text = replaced(text_of(kName), {rod, "direction = [\"r - R\", 0, \"-h\"]"});
@@ -97,8 +97,8 @@ TEST(DrawingGaps, AClearanceInAnOverConstrainedMechanismIsDoubtful) {
 
 TEST(DrawingGaps, AreNotSaidWithoutADrawing) { EXPECT_TRUE(uncovered_directions(from_file("rrr3")).empty()); }
 
-/// What the model itself says of single components: those in the list move the platform, and of the others those that
-/// no feature covers move nothing.
+/// Checks the list with the model: the listed error components move the platform; components that no feature covers and
+/// that are not listed have no effect.
 TEST(DrawingGaps, ActInTheModel) {
   std::string text = text_of(kName);
   text.erase(text.find("features = ["));
@@ -133,7 +133,7 @@ TEST(DrawingGaps, ActInTheModel) {
                            "delta_y_2", "delta_y_5", "delta_y_6"}) {
     EXPECT_GT(effect(acts), 1e-5) << acts;
   }
-  // Turns about the passive axes behind the part.
+  // Rotations about the passive axes after the part have no effect.
   for (const char* idle : {"epsilon_y_2", "epsilon_y_6"}) EXPECT_LT(effect(idle), 1e-12) << idle;
 }
 

@@ -1,4 +1,4 @@
-// Where the errors of a mechanism file act, and in which limbs.
+// Tests where the errors of a mechanism file act, and in which limbs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 using Errors = std::map<std::string, double>;
 
-/// Responses by name, where these errors alone vary.
+/// The responses by name, if only these errors are not zero.
 std::map<std::string, double> outcome(const Model& model, const std::vector<double>& pose, const Errors& named) {
   const ModelDescription& description = model.description();
   std::vector<FactorIndex> varied;
@@ -35,9 +35,8 @@ std::map<std::string, double> outcome(const Model& model, const std::vector<doub
   return found;
 }
 
-/// Three translations by a passive limb in the middle (Tricept), or the planar 3-RRR: with the base's frame lower by a
-/// parameter and aside by two others, and the platform's origin elsewhere by three, its tool and its points where they
-/// were.
+/// Geometry parameters of a Tricept and a planar 3-RRR: bx, by, bz shift the mechanism in the base frame, and px, py,
+/// pz shift the platform's origin. The tool and the points of the platform stay where they are in the mechanism.
 const std::string kShifts =
     "[geometry]\nbx = \"0 mm\"\nby = \"0 mm\"\nbz = \"0 mm\"\npx = \"0 mm\"\npy = \"0 mm\"\npz = \"0 mm\"\n";
 
@@ -95,13 +94,13 @@ std::string planar() {
 struct Shifted {
   std::string name;
   std::string text;
-  std::vector<double> pose;  ///< at home's orientation, of the mechanism that is not shifted
+  std::vector<double> pose;  ///< of the mechanism without shifts, in the home orientation
 };
 
 class Shifts : public testing::TestWithParam<Shifted> {
  protected:
-  /// The largest difference of responses that are not about P, as a share of the largest of that response by any error,
-  /// at 1 mm and 1 deg: with the base's frame and the platform's origin elsewhere.
+  /// The largest difference that the shifts in `geometry` make to a response to one error of 1 mm or 1 deg, relative to
+  /// the largest value of this response. Responses that refer to the platform's origin are not compared.
   double difference(const std::string& about, const std::vector<double>& geometry) const {
     const CatalogEntry entry = catalog_entry(GetParam().text + "[errors]\n" + about, "m.toml");
     const std::unique_ptr<Model> model = build(entry);
@@ -149,7 +148,7 @@ INSTANTIATE_TEST_SUITE_P(Mechanisms, Shifts,
                                          Shifted{"planar", planar(), {0.02, -0.01, 0.0}}),
                          [](const auto& instance) { return instance.param.name; });
 
-/// The same mechanism with errors about joints and about frames.
+/// The same mechanism with angular errors about the joints and about the origins of the frames.
 struct Both {
   CatalogEntry joint;
   CatalogEntry frame;
@@ -164,8 +163,8 @@ Both both(const std::string& name) {
           mechanism(file, default_geometry(file))};
 }
 
-/// An angle epsilon about a joint's point c is, about the frame's origin, the same angle with a displacement: c - exp
-/// (epsilon) c exactly, c x epsilon to first order.
+/// An angular error epsilon about the point c of a joint equals the same angular error about the frame's origin and a
+/// displacement: c - exp(epsilon) c exactly, c x epsilon to first order.
 TEST(ErrorsAbout, AreTheFramesWithTheDisplacementOfTheJoint) {
   std::mt19937_64 engine(5);
   const auto draw = [&](double size) {
@@ -204,7 +203,7 @@ TEST(ErrorsAbout, AreTheFramesWithTheDisplacementOfTheJoint) {
           const auto expected = outcome(*frame, pose, about_frame);
           const auto found = outcome(*joint, pose, about_joint);
           for (const auto& [response, value] : expected) EXPECT_NEAR(found.at(response), value, 1e-12) << response;
-          Errors displacement;  // without an angle it is all one, in every bit
+          Errors displacement;  // without an angle both have the same bits
           for (const char axis : {'x', 'y', 'z'})
             displacement["delta_" + at + axis] = about_joint["delta_" + at + axis];
           EXPECT_EQ(outcome(*joint, pose, displacement), outcome(*frame, pose, displacement));
@@ -281,7 +280,7 @@ TEST(LimbsOfErrors, ANameMeansAllCopies) {
   }
 }
 
-/// Six joints in a leg, three in the post in the middle.
+/// In the Tricept a leg has six joints, and the post in the middle has three.
 TEST(LimbsOfErrors, EachNeedsTheFrameInAllOfThem) {
   const std::string each = "limb = \"each\"\nname = \"foot\"\ncomponent = \"delta_x\"\n";
   EXPECT_EQ(problem_with(each + "frame = 6\n"),
@@ -315,7 +314,7 @@ TEST(LimbsOfErrors, EachSaysWhich) {
 
 // ---- sizes
 
-/// A universal joint of which the second axis is 1.2 mm beside the first, in a leg of 600 mm.
+/// A leg of 600 mm with a universal joint whose axes are 1.2 mm apart. A link must bound the errors, not this offset.
 TEST(SizesOfErrors, AreComparedWithLinks) {
   std::string text = text_of("rps3");
   const std::string joint = "{ name = \"q\", type = \"P\", from = \"A\"";
@@ -328,7 +327,7 @@ TEST(SizesOfErrors, AreComparedWithLinks) {
   EXPECT_EQ(bound("delta_1_1_x").part, "the distance from S to the platform's origin");
 }
 
-/// Links that are a real part of the mechanism count as before.
+/// Short links that are real parts of the mechanism do bound the errors.
 TEST(SizesOfErrors, ShortLinksCount) {
   const std::unique_ptr<Model> model = build(catalog_entry(text_of("rrr3"), "m.toml"));
   const ErrorBound bound = model->error_bound(FactorIndex(0));
@@ -336,7 +335,7 @@ TEST(SizesOfErrors, ShortLinksCount) {
   EXPECT_NEAR(bound.size, 0.08, 1e-12);
 }
 
-/// A ball in the platform's origin, of three hinges: what is left is the size of the whole.
+/// A limb of three hinges through the platform's origin has no link, so the bound is the reach of the mechanism.
 TEST(SizesOfErrors, WithoutALinkTheReachIsTheBound) {
   const std::string text =
       "format = \"poesy-mechanism\"\nversion = 1\nname = \"wrist\"\n[platform]\norigin = [0, 0, 0]\n"

@@ -68,7 +68,7 @@ TEST(Expression, BareZeroIsAnyQuantity) {
   EXPECT_EQ(dimension_text(of("a + 0 - 0")), "a length");
 }
 
-/// The column is that of the mistake inside the expression, whose quotation mark is at column 10.
+/// The messages name the column of the mistake. The opening quotation mark of the expression is at column 10.
 TEST(Expression, Mistakes) {
   for (const auto& [text, begin] : std::vector<std::pair<const char*, const char*>>{
            {"a + tilt", "m.toml:3:13: platform.origin[2] 'a + tilt' adds a length and an angle; both must have"},
@@ -155,7 +155,7 @@ TEST(Expression, Powers) {
   EXPECT_EQ(dimension_text(of("tilt^2")), "angle^2");
 }
 
-/// Each unit beside the SI: its size and its dimension.
+/// Each unit with its size in SI and its dimension.
 TEST(Expression, UnitsOfMechanics) {
   const double degree = std::numbers::pi / 180.0;
   struct Case {
@@ -231,7 +231,7 @@ TEST(Expression, NamesOfDimensions) {
   }
 }
 
-/// A name behind a number is a unit whatever parameters there are; elsewhere it is the parameter.
+/// After a number, a name is a unit, even if a parameter has the same name. Elsewhere it is the parameter.
 TEST(Expression, ParametersMayHaveTheNamesOfOtherUnits) {
   const std::vector<GeometryParameter> parameters{{"g", Dimension::length, 0.0, ""},
                                                   {"s", Dimension::length, 0.0, ""},

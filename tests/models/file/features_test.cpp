@@ -11,7 +11,7 @@
 #include "tests/models/file/files.h"
 #include "tests/models/file/wrong.h"
 
-// The drawing of a linear Delta in tests/data/drawing.json, by another program.
+// Compares the drawing of a linear Delta with tests/data/drawing.json, which another program computed.
 namespace poesy::file {
 namespace {
 
@@ -66,7 +66,7 @@ TEST(Features, SayWhichErrorsTheirZonesLimit) {
   ASSERT_EQ(rail.middle.size(), 2u);
   EXPECT_EQ(mechanism.factors[rail.middle[1].value].name, "rail_y_2");
   EXPECT_EQ(mechanism.factors[rail.tilt[0].value].name, "rail_lean_x_2");
-  EXPECT_TRUE(mechanism.features[0].middle.empty());  // a parallelism alone turns the face
+  EXPECT_TRUE(mechanism.features[0].middle.empty());  // with a parallelism alone, the face only tilts
   EXPECT_EQ(mechanism.features[0].tilt.size(), 2u);
   EXPECT_EQ(mechanism.factors.size(), 78u);
 }
@@ -89,7 +89,7 @@ TEST(Features, SayWhetherADistanceMakesItsPartLonger) {
   EXPECT_NE(rod(R"(joint = "C")", towards_b).find(shorter), std::string::npos);
   EXPECT_NE(rod(after_b, towards_c).find(shorter), std::string::npos);
   EXPECT_NE(rod(after_b, towards_b).find(longer), std::string::npos);
-  EXPECT_NE(rod(R"(joint = "B")", R"("-z")").find(longer), std::string::npos);  // a carriage on a P joint
+  EXPECT_NE(rod(R"(joint = "B")", R"("-z")").find(longer), std::string::npos);  // a carriage, on a P joint
   const std::string on_platform = R"(joint = "C", axis = 2, part = "after")";
   EXPECT_NE(rod(on_platform, R"([-1, 0, 0])").find(shorter), std::string::npos);  // to the platform's origin
   EXPECT_NE(rod(on_platform, R"([1, 0, 0])").find(longer), std::string::npos);
@@ -131,7 +131,7 @@ TEST(Features, AreLooseByAClearance) {
   ASSERT_NE(play, made.features.end());
   EXPECT_NEAR(play->clearance->most, 29e-6, 1e-18);
   EXPECT_NEAR(std::sqrt(play->clearance->mean_square), 17.24818831066034e-6, 1e-16);
-  // Its errors are those of the hinge there.
+  // The errors of the clearance act like those of the hinge at the same joint.
   const std::size_t lean = position(made.factors, "play_lean_x_2");
   const std::size_t hinge = position(made.factors, "hinge_b_lean_x_2");
   ASSERT_EQ(made.terms[lean].size(), made.terms[hinge].size());
@@ -163,7 +163,7 @@ TEST(Features, RefuseAClearanceWithPlaceAndRemedy) {
   refused("axis = 3, length = \"40 mm\", fit = \"8 H7/g6\"", "has 2 axes");
 }
 
-/// Responses of a model, by name.
+/// The model of a mechanism file, with its responses to named errors.
 class Answer {
  public:
   Answer(const std::string& text, std::size_t fidelity)
@@ -212,7 +212,7 @@ TEST(Features, MoveThePlatformAsTheOracleSays) {
   }
 }
 
-/// The plain solver solves the same as the kernels.
+/// The plain solver, which gives the trace, has the same responses as the kernels.
 TEST(Features, AreTracedWithTheSameResponses) {
   const Answer exact(text_of(kName), 0);
   const std::vector<double> pose{0.08, -0.08, 0.15};
@@ -394,7 +394,7 @@ TEST(Features, AreRefusedWithPlaceAndRemedy) {
       });
 }
 
-/// An error whose column is another one's, by its components or by a feature, moves the platform in the same way.
+/// If an error combines the same components as another error or a feature, it has the same effect on the platform.
 TEST(Combinations, AreTheColumnsOfTheirComponents) {
   const std::string text = text_of(kName) +
                            "\n[[error]]\nname = \"lean\"\nlimb = 1\nframe = 1\n"
@@ -422,7 +422,7 @@ TEST(Combinations, AreTheColumnsOfTheirComponents) {
   same({{"both", 3e-5}}, {{"rod_1", 3e-5}, {"rod_2", 3e-5}, {"zero_3", -6e-5}});
 }
 
-/// With features angles of a limb's first and last frame turn about the same points as without them.
+/// Angular errors of the first and last frame of a limb act about the same points with and without features.
 TEST(Combinations, TurnAboutTheJointsToFirstOrder) {
   const std::string angles =
       "\n[[error]]\nname = \"a\"\nlimb = \"each\"\nframe = 0\ncomponent = \"epsilon_y\"\n"

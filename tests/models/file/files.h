@@ -11,7 +11,7 @@
 
 namespace poesy::file {
 
-/// The text of tests/data/mechanisms/NAME.toml, or where there is none of results/gallery/NAME/NAME.toml.
+/// The text of tests/data/mechanisms/NAME.toml or, if there is none, of results/gallery/NAME/NAME.toml.
 inline std::string text_of(const std::string& name) {
   std::ifstream file(POESY_TEST_DATA "/mechanisms/" + name + ".toml");
   if (!file) file.open(POESY_TEST_DATA "/../../results/gallery/" + name + "/" + name + ".toml");
@@ -20,7 +20,7 @@ inline std::string text_of(const std::string& name) {
   return text.str();
 }
 
-/// That file, with its default geometry.
+/// The mechanism of this file (see text_of()) with its default geometry.
 inline Mechanism from_file(const std::string& name) {
   const MechanismFile file = read_mechanism_file(text_of(name), name + ".toml");
   return mechanism(file, default_geometry(file));

@@ -49,7 +49,8 @@ TEST(Frames, OfUniversalJointsLieAcrossTheLeg) {
   }
 }
 
-/// x points to the next joint's point, made perpendicular to z; where the points coincide, along a base axis.
+/// The x axis of a joint points to the next joint, projected perpendicular to z. If both points coincide, x is along a
+/// base axis.
 TEST(Frames, FollowThePrintedRule) {
   const Mechanism m = from_file("mixed6");
   ASSERT_EQ(m.limbs[0].joints.size(), 7u);
@@ -101,7 +102,8 @@ TEST(Frames, PlatformHasItsOwnAxes) {
   EXPECT_NEAR(m.points[0].z(), -0.02, 1e-15);
 }
 
-/// S that is first points to the next other point; a frame without motion counts; fallback axes are turned with copies.
+/// The z axis of an S joint at the beginning of a limb points to the next different point. Fixed frames count as
+/// frames. Base axes that serve as x are rotated with the copies of a limb.
 TEST(Frames, OfOddLimbs) {
   const Mechanism m = from_file("odd6");
   const Vector3 ball(0.0, 0.2, 0.04), plate(0.1, 0.15, 0.06), top(0.4, 0.0, 0.09);

@@ -6,7 +6,7 @@
 #include "tests/models/file/files.h"
 #include "tests/models/file/wrong.h"
 
-// Zones that a drawing leaves to ISO 2768.
+// Tests zones that a drawing leaves to the general tolerances of ISO 2768.
 namespace poesy::file {
 namespace {
 
@@ -16,12 +16,12 @@ const std::string kRail =
     "position = { zone = \"0.05 mm\", datums = \"A|B\" }, perpendicularity = { zone = \"0.02 mm\", datums = \"A\" }";
 const std::string kRod = "tolerance = \"0.02 mm\" },\n  { name = \"rod_bore\"";
 
-/// The Delta's file with the general tolerances of this list.
+/// The text of the Delta's file with these general tolerances.
 std::string with(const std::string& general) {
   return replaced(text_of(kName), {"[platform]", "[drawing]\ngeneral = " + general + "\n[platform]"});
 }
 
-/// That with another rail, or with another rod.
+/// The same text with other zones of the rail, or with another rod.
 /// @{
 std::string with_rail(const std::string& zones,
                       const std::string& general = "[\"ISO 2768-1:1989 m\", \"ISO 2768-2:1989 K\"]") {

@@ -9,7 +9,8 @@
 namespace poesy::file {
 namespace {
 
-/// A star is the number of the copy; a name without one is that of all copies, and of joints of other limbs.
+/// In the name of a drive, * is replaced by the number of the limb's copy. A name without * is one drive for all
+/// copies, and for joints of other limbs with this name.
 TEST(MechanismFile, DrivesAreNamed) {
   const Mechanism delta = from_file("delta6");
   const std::vector<Drive> drives = drives_of(delta);
@@ -259,7 +260,7 @@ TEST(MechanismFile, RefusesWhatIsWrongInRps3) {
       });
 }
 
-/// The motion of the platform is one of several possible ones, so its axis may differ between computers.
+/// Several motions of the platform are possible, so the axis in the message may differ between computers.
 TEST(MechanismFile, RefusesDrivesThatDoNotHoldThePlatform) {
   const auto expect = [](const Wrong& wrong) {
     const std::string problem = problem_of(replaced(text_of("rps3"), wrong));

@@ -10,7 +10,8 @@
 namespace poesy::file {
 namespace {
 
-/// joints, rank, loop equations, freedoms, over-constraints, of the platform, its rotations, idle, left when locked.
+/// Expected numbers of a mechanism: joints, rank, loop equations, freedoms, over-constraints, freedoms of the platform,
+/// rotations of the platform, idle freedoms, and freedoms left when the drives are locked.
 struct Row {
   const char* name;
   std::array<std::size_t, 9> numbers;
@@ -82,7 +83,7 @@ TEST(Mobility, MoreDrivesThanFreedomsAreOverConstraints) {
   EXPECT_NO_THROW(check_mobility(mechanism, found));
 }
 
-/// What the checks say of a mechanism with something else in the place of a part of its file.
+/// The message of the checks for a mechanism file in which `from` is replaced by `to`. "accepted" if there is none.
 std::string problem_of(const std::string& from, const std::string& to, const std::string& name = "rrr3") {
   std::string text = text_of(name);
   text.replace(text.find(from), from.size(), to);
@@ -134,7 +135,7 @@ joints = [ { name = "b", type = "P", at = ["200 mm", 0, 0], axis = "y", actuated
   EXPECT_THROW(check_mobility(made, home), InputError);
 }
 
-/// All arms are stretched.
+/// At this home pose all arms are stretched, which is singular.
 TEST(Mobility, HomeMustNotBeSingular) {
   EXPECT_EQ(
       problem_of("\"220 mm\", \"120 mm\", 0", "\"190 mm\", 0, 0"),
@@ -152,7 +153,7 @@ TEST(Mobility, HomeMustBeLikeOtherPoses) {
   EXPECT_THROW(check_mobility(mechanism, home, poses), InputError);
 }
 
-/// The axis on which a leg spins beside its own line: away from home its drive must move when it spins.
+/// The axis about which the leg can spin is not the leg's own line. So away from home its drive moves when it spins.
 TEST(Mobility, DrivesMustHoldThePlatformElsewhere) {
   const std::string problem = problem_of("at = \"top\"", "at = [\"d / 2\", \"b\", 0]", "odd6");
   EXPECT_TRUE(
@@ -161,7 +162,8 @@ TEST(Mobility, DrivesMustHoldThePlatformElsewhere) {
       << problem;
 }
 
-/// A Delta whose rods have their last axes in the wrong order: the platform turns, about no coordinate of it.
+/// A Delta whose rods have their last two axes in the wrong order, so the platform turns. The axis of this rotation is
+/// not a coordinate axis.
 TEST(Mobility, TellsTheAngleByWhichThePlatformTurns) {
   std::string text = text_of("linear-delta-drawing");
   const std::string right = R"(axis = ["h", 0, "r - R"], axis2 = "y")";

@@ -37,7 +37,7 @@ std::vector<double> values_of(const nlohmann::json& named, const auto& things) {
   return values;
 }
 
-/// What errors give at a pose, by a solver.
+/// The responses to these errors at a pose. options: the solver.
 std::vector<double> evaluate(const Model& model, std::span<const double> pose, const std::vector<double>& errors,
                              const SolverOptions& options) {
   std::vector<double> responses(model.description().responses.size());
@@ -51,7 +51,7 @@ std::vector<double> evaluate(const Model& model, std::span<const double> pose, c
   return responses;
 }
 
-/// tolerance: rad and m.
+/// Compares the responses that `expected` has. tolerance: in rad and m.
 void expect_responses(const nlohmann::json& expected, const ModelDescription& description,
                       std::span<const double> found, double tolerance = 1e-10) {
   std::size_t compared = 0;
@@ -108,7 +108,7 @@ TEST_P(OfOracle, HasTheDeformationsByBothMetrics) {
       const ModelDescription& description = model->description();
       const std::vector<double> pose = values_of(one["pose"], description.pose_coordinates);
       const std::vector<double> errors = values_of(one["errors"], description.factors);
-      // By the platform's metric the oracle compares limbs in pairs, to first order the same.
+      // With the platform metric the oracle compares limbs in pairs, which is the same only to first order.
       const double rotation = one[metric]["response"]["rotation"];
       const double tolerance = &by == &entry ? 3e-8 + 1e-5 * rotation : 1e-10;
       for (const auto method : {SolverOptions::Method::newton, SolverOptions::Method::gauss_newton}) {

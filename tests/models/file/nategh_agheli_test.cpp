@@ -1,4 +1,4 @@
-// The 6-UPS of Nategh and Agheli 2009 with its 42 measured errors: displacements that others computed.
+// Compares the 6-UPS of Nategh and Agheli 2009 and its 42 measured errors with displacements that others computed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ const CatalogEntry& hexapod() {
   return entry;
 }
 
-/// The measured errors [42], m, in the order of the model.
+/// [42] The measured errors (m) in the order of the model.
 std::vector<double> measured() {
   std::ifstream file(kFolder + "measured.csv");
   std::string names, values, name, value;
@@ -44,7 +44,7 @@ std::vector<double> measured() {
   return errors;
 }
 
-/// Responses [R x samples] of errors [F x samples] at a level pose (m).
+/// [responses x samples] The responses to errors [errors x samples] at a level pose. place: x, y, z (m).
 std::vector<double> responses(Evaluator& evaluator, const std::array<double, 3>& place,
                               const std::vector<double>& errors) {
   const std::array<double, 6> pose{place[0], place[1], place[2], 0.0, 0.0, 0.0};
@@ -76,8 +76,8 @@ TEST(NateghAgheli, ExactDisplacementsAgreeInAllPrintedDigits) {
   struct Case {
     double scale;
     std::array<double, 6> expected;  // mm and rad
-    double digits;                   // one unit of the last printed one, mm
-    double angle_digits;             // likewise, rad
+    double digits;                   // one unit of the last printed digit, mm
+    double angle_digits;             // one unit of the last printed digit, rad
   };
   for (const Case& one :
        {Case{
@@ -98,8 +98,8 @@ TEST(NateghAgheli, ExactDisplacementsAgreeInAllPrintedDigits) {
   }
 }
 
-/// Lengths of the nominal legs at a level pose (m), from the file's joints at home, where the platform is at (0, 0,
-/// 0.8).
+/// Whether no nominal leg is longer than kLongest (m) at the level pose (x, y, 0.8 m). home: the sketch at (0, 0, 0.8
+/// m).
 bool within_reach(const Sketch& home, double x, double y) {
   constexpr double kLongest = 1.1;
   for (const auto& limb : home.limbs) {
@@ -110,7 +110,7 @@ bool within_reach(const Sketch& home, double x, double y) {
   return true;
 }
 
-#ifdef POESY_SANITIZED  // they take a hundred times as long: a coarser grid, whose mean is near theirs
+#ifdef POESY_SANITIZED  // a sanitizer takes a hundred times as long, so the grid is coarser
 constexpr int kStep = 5;
 constexpr std::size_t kPoses = 1580;
 constexpr double kMeanTolerance = 0.05;  // mm

@@ -105,7 +105,7 @@ TEST_P(Oracle, DisplacementsAndPlatformAtEveryPose) {
   }
 }
 
-/// The errors of the cases are those that the file has.
+/// The errors of the mechanism file are those of the oracle's cases.
 TEST_P(Oracle, NamesOfErrors) {
   const json& errors = expected()["cases"][0]["errors"];
   EXPECT_EQ(mechanism_.factors.size(), errors.size());

@@ -9,11 +9,11 @@
 #include "tests/models/file/files.h"
 #include "tests/support/input_error.h"
 
-// [platform.points]: named points are displaced as the tool is, which the solvers report themselves.
+// Tests [platform.points]: named points are displaced like the tool, which the solvers report directly.
 namespace poesy::file {
 namespace {
 
-/// The file with a point at its tool, and one elsewhere.
+/// The text of a mechanism file with two named points: the nozzle at the tool, and the probe elsewhere.
 std::string with_points(const std::string& name) {
   std::string text = text_of(name);
   const std::size_t tool = text.find("tool ");
@@ -31,7 +31,7 @@ std::size_t position_of(const ModelDescription& model, std::string_view name) {
   return static_cast<std::size_t>(found - model.responses.begin());
 }
 
-/// Errors of `size` metres and radians, [F].
+/// [errors] Random normal errors with the standard deviation `size` (m, rad).
 std::vector<double> some_errors(const ModelDescription& model, double size) {
   std::mt19937_64 engine(8);
   std::normal_distribution<double> normal(0.0, size);
@@ -40,7 +40,7 @@ std::vector<double> some_errors(const ModelDescription& model, double size) {
   return errors;
 }
 
-/// A pose at this share of the workspace, other for each coordinate.
+/// A pose in the workspace. The first coordinate is at this share of its range, the others at different shares.
 std::vector<double> pose_at(const ModelDescription& model, double share) {
   std::vector<double> pose;
   for (std::size_t c = 0; c < model.pose_lower.size(); ++c, share = std::fmod(share + 0.37, 1.0)) {
@@ -59,7 +59,7 @@ std::vector<double> evaluate(Evaluator& evaluator, std::size_t responses, const 
   return found;
 }
 
-/// Returns by how much the tip moves.
+/// Expects that the nozzle moves like the tip. Returns the displacement of the tip (m).
 double expect_like_tip(const ModelDescription& model, std::span<const double> found) {
   for (const std::string end : {"_x", "_y", "_z", "_position"}) {
     const double tip = found[position_of(model, "tip" + end)];
@@ -98,7 +98,7 @@ TEST_P(Points, MoveAsTheToolDoes) {
   }
 }
 
-// Rotations of a radian: the formula by Rodrigues, of the platform's own displacement.
+// Compares the displacement of the probe with that of the platform, by Rodrigues' rotation formula.
 TEST_P(Points, FollowFromThePlatform) {
   const CatalogEntry entry = catalog_entry(with_points(GetParam()), "m.toml");
   const std::unique_ptr<Model> model = build(entry);

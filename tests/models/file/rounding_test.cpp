@@ -1,5 +1,5 @@
-// Over-constrained mechanisms whose numbers are rounded. The oracle is the exact mechanism: an axis that is off is an
-// error of it.
+// Over-constrained mechanisms with rounded numbers. They are compared with the exact mechanism, in which a wrong axis
+// is an error.
 #include "models/file/rounding.h"
 
 #include <fmt/format.h>
@@ -15,8 +15,8 @@
 namespace poesy::file {
 namespace {
 
-/// The planar 3-RRR with joint B of limb 2 along (tilt, 0, 1), and with its plane turned by a rotation whose entries
-/// are written with so many digits; 17: exactly.
+/// The text of a planar 3-RRR in which joint B of limb 2 is along (tilt, 0, 1). The mechanism is rotated by R, and its
+/// numbers are written with `digits` digits (17: exactly).
 std::string rrr3(double tilt, int digits = 17, const lie::Matrix3<double>& R = lie::Matrix3<double>::Identity()) {
   constexpr std::array<std::array<double, 2>, 3> kPoints{{{300.0, 0.0}, {220.0, 120.0}, {80.0, 0.0}}};
   const auto triple = [&](const Vector3& vector, const char* unit) {
@@ -40,7 +40,7 @@ std::string rrr3(double tilt, int digits = 17, const lie::Matrix3<double>& R = l
     for (std::size_t j = 0; j < 3; ++j) {
       const Vector3 point = turn.R * Vector3(kPoints[j][0], kPoints[j][1], 0.0);
       const double length =
-          digits < 17 ? 1.0 + 0.1 * static_cast<double>(3 * i + j) : 1.0;  // digits round each its way
+          digits < 17 ? 1.0 + 0.1 * static_cast<double>(3 * i + j) : 1.0;  // so that each axis is rounded differently
       text += fmt::format("{}\n  {{ name = \"{}\", type = \"R\", at = {}, axis = {}{} }}", j == 0 ? "" : ",", "ABC"[j],
                           triple(point, " mm"), triple(length * Vector3(i == 1 && j == 1 ? tilt : 0.0, 0.0, 1.0), ""),
                           j == 0 ? ", actuated = true" : "");
@@ -50,7 +50,7 @@ std::string rrr3(double tilt, int digits = 17, const lie::Matrix3<double>& R = l
   return text;
 }
 
-/// The same with its second limb cut by a body that ends it at joint A: a branched file.
+/// The same 3-RRR, but a body cuts limb 2 after joint A, so the file is branched.
 std::string cut_rrr3(double tilt) {
   std::string text = rrr3(tilt);
   const std::size_t second = text.find("[[limb]]", text.find("[[limb]]") + 1);
@@ -61,8 +61,8 @@ std::string cut_rrr3(double tilt) {
   return text;
 }
 
-/// Three cranks that keep the platform parallel, the third shorter by this: at home, where they are parallel, that
-/// shows in nothing.
+/// The text of a mechanism with three cranks that keep the platform parallel. The third crank is shorter by this (m),
+/// which has no effect at home, where the cranks are parallel.
 std::string cranks(double shorter) {
   std::string text =
       "format = \"poesy-mechanism\"\nversion = 1\nname = \"cranks\"\n[platform]\norigin = [0, \"100 mm\", 0]\n"
@@ -77,7 +77,7 @@ std::string cranks(double shorter) {
   return text;
 }
 
-/// A five-bar whose elbows are written as a drawing has them, to a micrometre, and whose last axis is off.
+/// A five-bar whose elbows are rounded to a micrometre, as on a drawing, and whose last axis is tilted.
 const std::string kFiveBar =
     "format = \"poesy-mechanism\"\nversion = 1\nname = \"five-bar\"\n"
     "[platform]\norigin = [0, \"110 mm\", 0]\ncoordinates = [\"x\", \"y\"]\n"
@@ -110,7 +110,7 @@ std::string problem_of(const std::string& text) {
   return "read";
 }
 
-/// What errors [F] give at a pose.
+/// The responses to these errors at a pose.
 std::vector<double> responses_of(const Model& model, const std::vector<double>& pose,
                                  const std::vector<double>& errors) {
   const ModelDescription& description = model.description();
@@ -128,8 +128,8 @@ std::vector<double> responses_of(const Model& model, const std::vector<double>& 
 
 std::vector<double> none(const Model& model) { return std::vector<double>(model.description().factors.size(), 0.0); }
 
-/// The errors of the exact 3-RRR that tilt joint B of limb 2 alone, about its point: in the frame before it the tilt,
-/// seen from joint A, and in the one behind it the tilt back.
+/// The errors of the exact 3-RRR that only tilt joint B of limb 2 about its point: the tilt in the frame before the
+/// joint, and the opposite tilt in the frame after it.
 std::vector<double> tilt_as_errors(const Model& exact, double tilt) {
   const Mechanism mechanism = mechanism_of(rrr3(0.0));
   const Transform& A = mechanism.limbs[1].joints[0].at_home;
@@ -166,7 +166,8 @@ TEST_P(Tilts, TheMechanismMovesAsTheExactOne) {
   EXPECT_NO_THROW(check_mobility(found.mechanism, found.home, poses));
 }
 
-/// Without errors the gap is the one that the tilt makes of the exact mechanism, and nothing else is a response.
+/// Without errors, the mismatch responses are those that the tilt causes in the exact mechanism; all other responses
+/// are zero.
 TEST_P(Tilts, TheMismatchIsThatOfTheTilt) {
   const double size = GetParam();
   const std::unique_ptr<Model> exact = model_of(rrr3(0.0));
@@ -190,7 +191,7 @@ TEST_P(Tilts, TheMismatchIsThatOfTheTilt) {
   EXPECT_LE(told, rounded->description().deformation->rounding);
 }
 
-/// The platform's displacement by errors is that of the exact mechanism, up to the tilt's share.
+/// Errors displace the platform as in the exact mechanism, up to a difference in proportion to the tilt.
 TEST_P(Tilts, ErrorsDoWhatTheyDoToTheExactMechanism) {
   std::mt19937_64 engine(3);
   const std::unique_ptr<Model> exact = model_of(rrr3(0.0));
@@ -204,7 +205,8 @@ TEST_P(Tilts, ErrorsDoWhatTheyDoToTheExactMechanism) {
   }
 }
 
-/// What is published weighs otherwise, and counts from its own nominal pose.
+/// The published metric has other weights and its own nominal pose. Its deformation without errors must be below the
+/// rounding threshold too.
 TEST_P(Tilts, AsPublishedToo) {
   const std::unique_ptr<Model> model = model_of(rrr3(GetParam()), 0, true);
   for (const std::vector<double>& pose : poses_) {
@@ -215,7 +217,7 @@ TEST_P(Tilts, AsPublishedToo) {
   }
 }
 
-/// Drives that are asked for lead to the pose whose drives they are.
+/// The drive positions of a pose lead back to this pose.
 TEST_P(Tilts, PosesByTheDrives) {
   const std::unique_ptr<Model> model = model_of(rrr3(GetParam()));
   const auto& charts = model->description().charts;
@@ -230,12 +232,12 @@ TEST_P(Tilts, PosesByTheDrives) {
   }
 }
 
-/// A limb cut in two by a body moves the platform as the whole limb does, up to the difference between pairs and
-/// bodies, and that of the poses, which share the mismatch otherwise.
+/// A limb that a body cuts in two moves the platform like the whole limb. Small differences remain, because the
+/// mismatch is then divided differently.
 TEST_P(Tilts, ALimbMayBeCutByABody) {
   struct Error {
     const char* whole;
-    const char* cut;  ///< limb 2 is cut, so the third one is limb 4
+    const char* cut;  ///< limb 2 becomes limbs 2 and 3, so limb 3 becomes limb 4
     double size;
   };
   const std::array errors{Error{"epsilon_1_1_x", "epsilon_1_1_x", 1e-4}, Error{"delta_3_2_y", "delta_4_2_y", 1e-4},
@@ -254,7 +256,7 @@ TEST_P(Tilts, ALimbMayBeCutByABody) {
       for (const std::vector<double>& pose : poses_) {
         const std::vector<double> wanted = responses_of(*whole, pose, of_whole);
         const std::vector<double> found = responses_of(*cut, pose, of_cut);
-        for (std::size_t r = 3; r < wanted.size(); ++r) {  // of the platform
+        for (std::size_t r = 3; r < wanted.size(); ++r) {  // responses of the platform
           EXPECT_NEAR(found[r], wanted[r], size * (5e-9 + 1e-3 * GetParam()) + 1e-13);
         }
       }
@@ -262,8 +264,8 @@ TEST_P(Tilts, ALimbMayBeCutByABody) {
   }
 }
 
-/// Without errors the gap is the one that the tilt makes of the exact mechanism: in the frame of the body the tilt
-/// about joint B, and behind the joint the tilt back.
+/// Without errors, the mismatch is the one that the tilt causes in the exact mechanism: the tilt about joint B in the
+/// frame at the body, and the opposite tilt after the joint.
 TEST_P(Tilts, TheMismatchOfACutLimbIsThatOfTheTilt) {
   const std::unique_ptr<Model> exact = model_of(cut_rrr3(0.0));
   EXPECT_TRUE(exact->remarks().empty());
@@ -315,7 +317,7 @@ TEST(Rounding, AFiveBarAsDrawn) {
   EXPECT_EQ(problem_of(kFiveBar), "read");
 }
 
-/// At home the ranks are those of the exact mechanism.
+/// Rounding may be visible only away from home. At home the ranks are those of the exact mechanism.
 TEST(Rounding, MayShowAwayFromHomeAlone) {
   EXPECT_FALSE(checked_of(cranks(0.0)).mechanism.precision.rounded());
   for (const double shorter : {1e-9, 1e-6, 1e-5}) {
@@ -328,7 +330,7 @@ TEST(Rounding, MayShowAwayFromHomeAlone) {
   }
 }
 
-/// Nothing of what is exact is taken otherwise.
+/// Exact files must not be treated as rounded.
 TEST(Rounding, ExactFilesStayExact) {
   for (const char* name : {"rps3", "ups6", "sps6", "upr2-rpu", "tripteron", "rrr3", "press", "odd6", "mixed6", "3-rps",
                            "3-prs", "2upr-rpu", "3-rrr", "6-ups"}) {
@@ -339,7 +341,7 @@ TEST(Rounding, ExactFilesStayExact) {
   }
 }
 
-/// Errors in the plane deform nothing, whatever the file's digits leave.
+/// Errors in the plane cause no gap above the rounding threshold; errors out of the plane do.
 TEST(Rounding, IsBelowWhatDeforms) {
   const std::unique_ptr<Model> model = model_of(rrr3(3.7e-6));
   const double rounding = model->description().deformation->rounding;
@@ -362,7 +364,7 @@ TEST(Rounding, SaysWhatTheNumbersLeave) {
   EXPECT_TRUE(model_of(rrr3(0.0))->remarks().empty());
 }
 
-/// A geometry of a study may be rounded where the file's is not.
+/// The geometry of a study may be rounded even if that of the file is exact.
 TEST(Rounding, OfAnotherGeometry) {
   std::string text = cranks(0.0);
   const std::string last = "[\"200 mm\", \"100 mm\", 0]";
@@ -375,8 +377,8 @@ TEST(Rounding, OfAnotherGeometry) {
   EXPECT_FALSE(model->unreachable(std::array{0.05}));
 }
 
-/// A spherical 3-RRR, all axes through the origin but for the one of joint B of limb 2, which is this far beside it
-/// (mm).
+/// The text of a spherical 3-RRR. All axes go through the origin, except that joint B of limb 2 is off by `beside`
+/// (mm); empty: no offset.
 std::string spherical(const std::string& beside) {
   std::string text =
       "format = \"poesy-mechanism\"\nversion = 1\nname = \"eye\"\n[platform]\norigin = [0, 0, 0]\n"
@@ -418,7 +420,7 @@ TEST(Rounding, LeavesMistakesMistakes) {
       << problem_of(rrr3(0.1));
 }
 
-/// A body's joint that is far off is named, with its limb's label.
+/// In a branched file, the message names the wrong joint and its limb.
 TEST(MisfitOfBranched, NamesTheJoint) {
   const std::string problem = problem_of(cut_rrr3(3e-3));
   EXPECT_NE(problem.find("the limbs do not fit each other"), std::string::npos) << problem;

@@ -1,4 +1,5 @@
-// What calibration can remove, of mechanisms from files: against their exact solver and against the compiled 3-PRS.
+// Tests what calibration can remove for mechanisms from files, compared with their exact solver and with the compiled
+// 3-PRS.
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
@@ -16,7 +17,7 @@
 namespace poesy::file {
 namespace {
 
-/// Of one sample, by name.
+/// The responses of one sample by name.
 std::map<std::string, double> responses_of(const Model& model, const std::vector<double>& pose,
                                            const std::vector<double>& errors) {
   const ModelDescription& description = model.description();
@@ -67,7 +68,7 @@ TEST(SeparationOfFile, IsThatOfTheCompiledThreePrs) {
   }
 }
 
-/// Of errors of some tenths of a millimetre and of a degree, all at once.
+/// All errors act together, each up to 0.3 mm or 0.3 mrad.
 TEST(CalibratedFile, IsTheCompiledThreePrs) {
   std::ostringstream text;
   text << std::ifstream(POESY_TEST_DATA "/../../results/gallery/3-prs/3-prs.toml").rdbuf();
@@ -91,28 +92,29 @@ TEST(CalibratedFile, IsTheCompiledThreePrs) {
   }
 }
 
-/// A correction of one joint by its drive as errors of the frame behind it, whose axis it has: of a screw both its turn
-/// and its advance.
+/// One joint of a drive. Its motion is described by errors of the frame after it: a rotation about the joint's axis and
+/// a displacement along the axis. A screw has both.
 struct Driven {
-  std::size_t turn;      ///< factor about the axis
-  std::size_t slide;     ///< factor along it
-  double turn_by = 0.0;  ///< per unit of the drive
+  std::size_t turn;      ///< index of the error about the axis
+  std::size_t slide;     ///< index of the error along the axis
+  double turn_by = 0.0;  ///< rotation per unit of the drive
   double slide_by = 0.0;
 };
 
-/// A mechanism of tests/data with every error of its frames, by its platform's metric or as published.
+/// A mechanism of tests/data in which all six errors of each frame are errors of the model.
 class OfMechanism : public testing::TestWithParam<std::string> {
  protected:
   OfMechanism() {
     std::string text = text_of(GetParam());
-    text = text.substr(0, std::min(text.find("\n[errors]"), text.find("\n[[error]]")));  // then it has all of them
+    // A file without these tables has all errors.
+    text = text.substr(0, std::min(text.find("\n[errors]"), text.find("\n[[error]]")));
     const MechanismFile file = read_mechanism_file(text, GetParam());
     mechanism_ = mechanism(file, default_geometry(file));
     entry_ = catalog_entry(text, GetParam());
     find_drives();
   }
 
-  /// Joints of one name have one drive, each other joint has its own.
+  /// Joints with the same drive name have one drive. Every other actuated joint has its own drive.
   void find_drives() {
     std::map<std::string, std::size_t> named;
     for (std::size_t i = 0; i < mechanism_.limbs.size(); ++i) {
@@ -139,7 +141,8 @@ class OfMechanism : public testing::TestWithParam<std::string> {
     return std::ranges::any_of(drives_, [](const std::vector<Driven>& drive) { return drive.size() > 1; });
   }
 
-  /// Where the platform's points go, over the root of their number, for each column of errors [F x B]: [3 x points, B].
+  /// [3 points x samples] The displacements of the platform's points, divided by the square root of their number.
+  /// errors: [errors x samples].
   Eigen::MatrixXd displacements(const Model& model, const std::vector<double>& pose,
                                 const Eigen::MatrixXd& errors) const {
     const ModelDescription& description = model.description();
@@ -175,7 +178,7 @@ class OfMechanism : public testing::TestWithParam<std::string> {
     return moved / std::sqrt(static_cast<double>(points));
   }
 
-  /// By a unit of each drive, of the displacements by units of errors.
+  /// [3 points x drives] The displacements per unit of each drive. by_errors: the displacements per unit of each error.
   Eigen::MatrixXd by_drives(const Eigen::MatrixXd& by_errors) const {
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(by_errors.rows(), static_cast<Eigen::Index>(drives_.size()));
     for (std::size_t d = 0; d < drives_.size(); ++d) {
@@ -188,7 +191,7 @@ class OfMechanism : public testing::TestWithParam<std::string> {
     return columns;
   }
 
-  /// Errors [F x B] with corrections [drives x B] besides.
+  /// The errors [errors x samples] plus the corrections [drives x samples] of the drives.
   Eigen::MatrixXd corrected(Eigen::MatrixXd errors, const Eigen::MatrixXd& corrections) const {
     for (std::size_t d = 0; d < drives_.size(); ++d) {
       const auto correction = corrections.row(static_cast<Eigen::Index>(d));
@@ -214,14 +217,14 @@ class OfMechanism : public testing::TestWithParam<std::string> {
       const std::string& name = model.description().factors[at].name;
       const double effect = effects.col(f).norm();
       EXPECT_NEAR(found.effect[at], effect, 1e-7 * (1.0 + effect)) << name;
-      // The errors and what corrects them go on in second order.
+      // The tolerance allows for second-order effects of the errors and the corrections.
       EXPECT_NEAR(found.residual[at], left.col(f).norm(), 1e-4 * (1.0 + effect)) << name;
     }
   }
 
   Mechanism mechanism_;
   CatalogEntry entry_;
-  std::vector<std::vector<Driven>> drives_;  ///< with the joints of each
+  std::vector<std::vector<Driven>> drives_;  ///< the joints of each drive
 };
 
 TEST_P(OfMechanism, CorrectionsLeaveTheResidual) {
@@ -233,7 +236,7 @@ TEST_P(OfMechanism, CorrectionsLeaveTheResidual) {
   check(*build(*entry_.other_metric), draw_pose(entry_.description, engine));
 }
 
-/// Calibrated responses are what is left of each error, by the exact solver and to first order.
+/// The responses after calibration equal the residual of each error, for both fidelities.
 TEST_P(OfMechanism, CalibrationLeavesTheResidual) {
   std::mt19937_64 engine(8);
   constexpr double kStep = 1e-6;
@@ -251,14 +254,15 @@ TEST_P(OfMechanism, CalibrationLeavesTheResidual) {
   }
 }
 
-/// With six drives that hold six freedoms everything can be corrected; with fewer, shares are between none and all.
+/// With six drives for six freedoms every error can be corrected. With fewer drives the residual is between zero and
+/// the whole effect.
 TEST_P(OfMechanism, SharesAreBetweenNoneAndAll) {
   std::mt19937_64 engine(7);
   const std::unique_ptr<Model> model = build(entry_);
   const Separation found = model->separation(draw_pose(entry_.description, engine));
   for (std::size_t f = 0; f < found.effect.size(); ++f) {
     EXPECT_LE(found.residual[f], found.effect[f] * (1.0 + 1e-12));
-    // A drive of several limbs need not take away what enters through it.
+    // A drive that moves joints of several limbs cannot remove every error that enters through one of them.
     EXPECT_LE(found.residual[f], (drives_are_shared() ? found.effect[f] : found.constraint[f]) * (1.0 + 1e-12));
     if (drives_.size() < 6) continue;
     EXPECT_EQ(found.residual[f], 0.0);
@@ -281,7 +285,8 @@ INSTANTIATE_TEST_SUITE_P(Mechanisms, OfMechanism, testing::ValuesIn(kMechanisms)
                          test::named({"rps3", "ups6", "sps6", "upr2_rpu", "tripteron", "rrr3", "press", "odd6",
                                       "mixed6", "delta6", "geared3"}));
 
-/// A motor that moves both rods of a carriage cannot take back what one of them does alone, but what both do.
+/// A motor that moves both rods of a carriage cannot correct an error of one rod alone, but it can correct equal errors
+/// of both.
 TEST(SharedDrives, CorrectWhatTheirJointsDoTogether) {
   const std::unique_ptr<Model> model = build(catalog_entry(text_of("delta6"), "delta6.toml"));
   const Separation found = model->separation(std::vector{0.03, -0.02, 0.04});
@@ -290,7 +295,8 @@ TEST(SharedDrives, CorrectWhatTheirJointsDoTogether) {
     EXPECT_NEAR(found.drive[factor(stop)], found.effect[factor(stop)], 1e-12) << stop;
     EXPECT_GT(found.residual[factor(stop)], 0.3 * found.effect[factor(stop)]) << stop;
   }
-  // The motors displace the platform and do not turn it, so all of a turn is left; both stops move the carriage.
+  // The motors translate the platform but do not rotate it, so the whole rotation remains. Equal errors of both stops
+  // are a motion of the carriage.
   const std::unique_ptr<Model> corrected = calibrated(build(catalog_entry(text_of("delta6"), "delta6.toml")));
   std::vector<double> errors(found.effect.size(), 0.0);
   const std::vector<double> pose{0.03, -0.02, 0.04};

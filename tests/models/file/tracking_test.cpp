@@ -32,7 +32,8 @@ TEST_P(Everywhere, LoopsAreClosed) {
   }
 }
 
-/// To rounding: a screw of 5 mm turns it into a thousand times as much.
+/// At home all displacements are zero up to rounding. A screw with a lead of 5 mm amplifies rounding errors a thousand
+/// times.
 TEST_P(Everywhere, HomeIsZero) {
   std::vector<double> pose;
   for (const Coordinate& c : mechanism_.coordinates) pose.push_back(home_pose(mechanism_)[c.component]);
@@ -66,8 +67,8 @@ TEST(Tracker, ScrewsTurnByTheirLead) {
   EXPECT_NEAR(found.displacements[4], 0.03, 1e-14);
 }
 
-/// By hand: a rod of length L reaches down from its carriage. Both rods of a carriage have one displacement in every
-/// bit, the platform does not turn, and no rod spins.
+/// The height of a carriage is computed by hand from the rod length. Both joints of a carriage have exactly the same
+/// displacement, and the platform does not rotate.
 TEST(Tracker, JointsOfOneDriveMoveTogether) {
   const Mechanism mechanism = from_file("delta6");
   const Tracker tracker(mechanism);
@@ -86,7 +87,7 @@ TEST(Tracker, JointsOfOneDriveMoveTogether) {
   }
 }
 
-/// Two axes of a limb that are geared.
+/// Two joints of each limb are coupled by a gear, so they are one drive.
 TEST(Tracker, JointsOfOneLimbMayHaveOneDrive) {
   const Mechanism mechanism = from_file("geared3");
   const Tracker tracker(mechanism);
@@ -97,7 +98,7 @@ TEST(Tracker, JointsOfOneLimbMayHaveOneDrive) {
   }
 }
 
-/// Without the names the drives of a carriage move apart, and the platform has six freedoms.
+/// Without the common name, both joints of a carriage are separate drives, and the platform has six freedoms.
 TEST(Tracker, JointsWithoutADriveInCommonMoveApart) {
   std::string text = text_of("delta6");
   for (std::size_t at = text.find("\"motor_*\""); at != std::string::npos; at = text.find("\"motor_*\"")) {
@@ -107,7 +108,7 @@ TEST(Tracker, JointsWithoutADriveInCommonMoveApart) {
   EXPECT_EQ(home_mobility(mechanism(file, default_geometry(file))).platform_freedoms, 6u);
 }
 
-/// Left-handed screws: a leg grows by -q lead / 2 pi, however its hinges stand.
+/// The screws are left-handed: the length of a leg grows by -q lead / (2 pi), whatever its orientation.
 TEST(Tracker, LegsGrowWithTheirScrews) {
   const Mechanism mechanism = from_file("mixed6");
   const Tracker tracker(mechanism);
@@ -127,7 +128,8 @@ TEST(Tracker, LegsGrowWithTheirScrews) {
   }
 }
 
-/// Spinning any leg of 6-SPS while the platform is at rest makes the sum of squares larger.
+/// The displacements of idle freedoms have the least norm: spinning any leg of the 6-SPS makes the sum of squares
+/// larger.
 TEST(Tracker, IdleFreedomsTakeTheLeastNorm) {
   const Mechanism mechanism = from_file("sps6");
   const Tracker tracker(mechanism);
@@ -154,8 +156,9 @@ TEST(Tracker, IdleFreedomsTakeTheLeastNorm) {
   }
 }
 
-/// Legs that may spin, and screws: displacements change smoothly between two poses, so idle freedoms do not depend on
-/// the way from home. Without them workspace_test.cpp knows by how much.
+/// Mechanisms with legs that may spin, and with screws. Displacements change smoothly between two poses, so idle
+/// freedoms do not depend on the path from home. For mechanisms without idle freedoms, workspace_test.cpp bounds the
+/// changes.
 class Spinning : public testing::TestWithParam<const char*> {};
 
 TEST_P(Spinning, IsContinuousAlongLines) {
@@ -197,7 +200,7 @@ TEST(Tracker, SaysHowFarTheWayWent) {
   EXPECT_NE(Tracker(mechanism).track(std::vector{std::nan(""), 0.0, 0.0}).unreachable, "");
 }
 
-/// The engine's limbs have the same forward kinematics; a fixed frame is a joint that is held at zero.
+/// A limb has the same forward kinematics as the corresponding chain::Limb.
 TEST(Tracker, LimbsAreThoseOfChains) {
   const Mechanism mechanism = from_file("rps3");
   std::vector<double> q{0.1, 0.02, -0.3, 0.2, 0.4};
@@ -214,7 +217,7 @@ TEST(Tracker, LimbsAreThoseOfChains) {
   }
 }
 
-/// Columns of limbs and of the platform are derivatives.
+/// The columns of limb_transform() and platform_columns() are derivatives of the transforms.
 TEST(Tracker, ColumnsAreDerivatives) {
   const Mechanism mechanism = from_file("mixed6");
   constexpr double kStep = 1e-6;

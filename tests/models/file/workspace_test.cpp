@@ -8,19 +8,20 @@
 #include "tests/models/file/files.h"
 #include "tests/models/file/poses.h"
 
-/// Tracking all over a mechanism's workspace: closed loops, one solution for each pose, one working mode.
+/// Tests tracking over the whole workspace of mechanisms: all loops close, each pose has one solution, and the working
+/// mode stays the same.
 namespace poesy::file {
 namespace {
 
 using Vector = Eigen::VectorXd;
 using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// How much is tried; less where nothing is optimized.
+/// How many poses and lines are tested. A build without optimisation tests fewer.
 struct Effort {
   const char* name;
   std::size_t poses;
   std::size_t lines;
-  std::size_t steps;  ///< of a line
+  std::size_t steps;  ///< steps of each line
 
 #ifndef NDEBUG
   static constexpr std::size_t kLess = 100;
@@ -39,14 +40,14 @@ std::vector<Tracked> track_all(const Mechanism& mechanism, std::span<const std::
   return found;
 }
 
-/// In units of the reach, as all that follows.
+/// The joint displacements (rad, or lengths in units of the reach). The functions below use these units.
 Vector displacements(const Mechanism& mechanism, const Tracked& tracked) {
   const std::vector<double> list = scaled_displacements(mechanism, tracked.displacements, 1.0 / mechanism.reach);
   return Eigen::Map<const Vector>(list.data(), std::ssize(list));
 }
 
-/// Velocity [moving] of all joints there when the coordinates have this one [coordinates]: J_i dq_i = C dpose for all
-/// limbs, with the components of the pose that are no coordinates as unknowns too.
+/// [moving joints] The velocities of all joints if the pose coordinates have the velocities `coordinates`. Solves J_i
+/// dq_i = C dpose for all limbs; components of the pose that are not coordinates are unknown too.
 Vector velocity(const Mechanism& mechanism, const Tracked& there, std::span<const double> coordinates) {
   const Mechanism unit = in_reaches(mechanism);
   const Vector q = displacements(mechanism, there);
@@ -81,7 +82,8 @@ Vector velocity(const Mechanism& mechanism, const Tracked& there, std::span<cons
   return rates.head(q.size());
 }
 
-/// The smallest distance of other roots of limb 1, by Newton's method from anywhere; a full turn is no distance.
+/// The smallest distance from the configuration of limb 1 to its other inverse-kinematics solutions, found by Newton's
+/// method from random starts. Whole turns do not count.
 double nearest_other_root(const Mechanism& mechanism, const Tracked& there) {
   const Mechanism unit = in_reaches(mechanism);
   const Limb& limb = unit.limbs.front();
@@ -140,8 +142,8 @@ TEST_P(Workspace, ClosesLoopsWhateverTheOrder) {
   }
 }
 
-/// A step is the integral of the joints' velocity, which the Jacobian gives at both ends: no joint moves by more than
-/// the larger of the two would take it, and what the velocities change by. Another working mode is farther.
+/// The Jacobian gives the joint velocities at both ends of a step. In a step no joint may move by more than the larger
+/// of both velocities plus their difference allows. A jump to another working mode would be larger.
 TEST_P(Workspace, StaysInTheWorkingModeAlongLines) {
   const Tracker tracker(mechanism_);
   const std::size_t lines = GetParam().lines / Effort::kLess + 1;
@@ -192,8 +194,8 @@ INSTANTIATE_TEST_SUITE_P(Files, Workspace,
 
 constexpr double kPart = 1.0 / 4096;
 
-/// The end of the first part of the way that a limb of two links and three parallel hinges does not span, by
-/// Pythagoras; more than 1: all do.
+/// The share of the path from home to `wanted`, in steps of kPart, at which a limb first cannot reach; more than 1 if
+/// all limbs reach everywhere. Computed from the two links of each limb, which has three parallel hinges.
 double first_out_of_reach(const Mechanism& mechanism, std::span<const double> wanted) {
   const auto in_reach = [&](double share) {
     PlatformPose pose = home_pose(mechanism);

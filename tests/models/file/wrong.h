@@ -11,14 +11,15 @@
 
 namespace poesy::file {
 
-/// A wrong file: a part of a right one, what is put in its place, and the message.
+/// A wrong file: in a valid file, `from` is replaced by `to`; it must be refused with `message`.
 struct Wrong {
   std::string from;
   std::string to;
   std::string message = {};
 };
 
-/// What reading says of the text, and of its mobility at home.
+/// The message with which the text is refused by reading or by the checks of mobility and metric. "read" if it is
+/// accepted.
 inline std::string problem_of(const std::string& text) {
   try {
     const MechanismFile file = read_mechanism_file(text, "m.toml");
@@ -31,7 +32,7 @@ inline std::string problem_of(const std::string& text) {
   return "read";
 }
 
-/// The text with that part replaced.
+/// The text with `from` replaced by `to`.
 inline std::string replaced(std::string text, const Wrong& wrong) {
   const std::size_t at = text.find(wrong.from);
   EXPECT_NE(at, std::string::npos) << wrong.from;

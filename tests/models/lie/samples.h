@@ -10,7 +10,7 @@
 
 namespace poesy::lie {
 
-/// A rotation angle at which every property is tried.
+/// A rotation angle (rad) for which all properties are tested.
 struct Regime {
   std::string name;
   double angle;
@@ -27,7 +27,7 @@ inline std::vector<Regime> regimes() {
 
 inline Vector3<double> random_axis(std::mt19937_64& engine) {
   std::normal_distribution<double> normal;
-  // One after the other, because the order of arguments is the compiler's.
+  // Drawn one after the other, because the compiler chooses the evaluation order of arguments.
   const double z = normal(engine), y = normal(engine), x = normal(engine);
   return Vector3<double>(x, y, z).normalized();
 }

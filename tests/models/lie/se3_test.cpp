@@ -22,7 +22,7 @@ double difference(const Transform<double>& a, const Transform<double>& b) {
   return (homogeneous(a) - homogeneous(b)).cwiseAbs().maxCoeff();
 }
 
-/// Du et al. 2022, Eqs. A6-A7, as printed.
+/// The logarithm by Du et al. 2022, Eqs. A6-A7, as printed.
 Screw<double> printed_log(const Transform<double>& transform) {
   const Matrix4 g = homogeneous(transform);
   const double t = std::acos((g.trace() - 2.0) / 2.0);

@@ -12,8 +12,8 @@ namespace {
 
 using Wide = long double;
 
-/// exp of a 3x3 matrix by scaling, a long Taylor series and squaring, in long double: an oracle that shares no formula
-/// with the code.
+/// The exponential of a 3x3 matrix by scaling, a Taylor series and squaring, in long double. It shares no formula with
+/// the tested code.
 Matrix3<Wide> matrix_exponential(const Matrix3<Wide>& m) {
   Matrix3<Wide> power = Matrix3<Wide>::Identity();
   Matrix3<Wide> sum = power;

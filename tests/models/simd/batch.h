@@ -4,19 +4,19 @@
 
 #include "models/simd/math.h"
 
-// What the tests ask of a batch. Nothing but pointers and numbers: also read by translation units compiled for one
-// instruction set.
+// The functions of a batch that the tests call. The interface has only pointers and numbers, because translation units
+// compiled for one instruction set include it too.
 
 namespace poesy::simd {
 
 inline constexpr std::size_t kOperations = 11;
 
-/// What a batch does to rows of numbers. count: a multiple of 8.
+/// Functions that apply batch operations to rows of numbers. count: a multiple of 8.
 struct Batch {
   void (*sin_cos)(const double* x, std::size_t count, double* sines, double* cosines);
-  /// out: [kOperations x count]: a + b, a - b, a b, a / b, a b + c, c - a b, sqrt |a|, nearest a, the larger, the
-  /// smaller, and the truth values in one number: 2 where (a > b and not b < c) or c > a, and where a < b, 4 by
-  /// select and 1 by bits.
+  /// out: [kOperations x count] a + b, a - b, a b, a / b, a b + c, c - a b, sqrt |a|, the integer nearest to a, the
+  /// larger and the smaller of a and b, and a sum of comparisons: 2 if (a > b and not b < c) or c > a, plus, if a < b,
+  /// 4 by select and 1 by bits.
   void (*operate)(const double* a, const double* b, const double* c, std::size_t count, double* out);
 };
 
@@ -25,7 +25,7 @@ Batch avx2_batch();
 Batch avx512_batch();
 Batch neon_batch();
 
-/// The same for all of them: T is simd::Number or a Pack.
+/// Implements Batch::sin_cos for the number type T: simd::Number or a Pack.
 template <class T>
 void sin_cos_rows(const double* x, std::size_t count, double* sines, double* cosines) {
   for (std::size_t n = 0; n < count; n += T::kLanes) {

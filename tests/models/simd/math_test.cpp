@@ -44,7 +44,7 @@ Angles angles_of(const Batch& batch, std::vector<double> x) {
   return angles;
 }
 
-/// Of either sign, all sizes from 1e-12 up to 100.
+/// Random angles (rad) of both signs with magnitudes from 1e-12 to 100.
 std::vector<double> wide_angles(std::size_t count) {
   std::mt19937_64 engine(5);
   std::uniform_real_distribution<double> uniform(-100.0, 100.0);
@@ -57,7 +57,7 @@ std::vector<double> wide_angles(std::size_t count) {
   return x;
 }
 
-/// All multiples of pi/2 and pi/4 within +-100, their neighbours, and angles close by.
+/// All multiples of pi/4 within +-100, their neighbouring doubles, and angles close to them.
 std::vector<double> near_quarter_turns() {
   std::vector<double> x;
   for (int n = -127; n <= 127; ++n) {
@@ -73,7 +73,7 @@ double ulp(double x) {
   return std::nextafter(size, std::numeric_limits<double>::infinity()) - size;
 }
 
-/// In units of the last place of the truth; what is below `floor` does not count.
+/// The error in units in the last place of the truth. Errors below `floor` count as 0.
 double error_in_ulps(double value, long double truth, double floor) {
   const long double error = std::abs(static_cast<long double>(value) - truth);
   if (error < static_cast<long double>(floor)) return 0.0;
@@ -100,8 +100,8 @@ TEST_P(EveryBatch, SineAndCosineAreWithinTwoUlps) {
 }
 
 TEST_P(EveryBatch, SineAndCosineKeepTheirErrorNearQuarterTurns) {
-  // Where one of them vanishes, it has the error of pi/2 in two parts, 1e-26 per quarter turn: many units of its own
-  // last place, but far below the rounding of the other one.
+  // Near a zero of sine or cosine the error is that of pi/2 stored in two parts: 1e-26 per quarter turn. This is many
+  // units in the last place of the small value, but far below the rounding of the other function.
   EXPECT_LE(worst_error(angles_of(batch(), near_quarter_turns()), 64 * 1e-26), 2.0);
 }
 
@@ -130,7 +130,7 @@ TEST_P(EveryBatch, SineAndCosineOfNothingAreNotNumbers) {
   }
 }
 
-/// Numbers of every kind, so that each meets each.
+/// Operands of all kinds (zeros, infinities, subnormals, ...) in all combinations, and random ones.
 struct Operands {
   std::vector<double> a, b, c;
 };
@@ -160,7 +160,7 @@ Operands operands() {
   return all;
 }
 
-/// What the words mean, in the language's own arithmetic.
+/// The expected results of the operations, in plain C++. fused: whether a multiply-add rounds once.
 std::vector<double> expected(double a, double b, double c, bool fused) {
   const double product_sum = fused ? std::fma(a, b, c) : a * b + c;
   const double sum_less_product = fused ? std::fma(-a, b, c) : c - a * b;

@@ -1,4 +1,4 @@
-// The 3-PRS with its carriages corrected: against separation(), and against the mechanism whose carriages are moved.
+// Compares the 3-PRS with corrected carriages with separation() and with the mechanism whose carriages are moved.
 #include "engine/model/calibrated.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ Configuration nominal_at(const std::vector<double>& pose) { return configuration
 
 Screw displacement_of(const Solved& found) { return Eigen::Map<const Screw>(found.responses.data()); }
 
-/// Displacements of the three spherical joints over sqrt(3), from the definition of the measure.
+/// The displacements of the three spherical joints, divided by sqrt(3). Their norm is the measure of the separation.
 Eigen::Matrix<double, 9, 1> joints(const Configuration& nominal, const Screw& x) {
   Eigen::Matrix<double, 9, 1> moved;
   for (std::size_t i = 0; i < kLimbs; ++i) {
@@ -49,7 +49,7 @@ Errors one_error(std::size_t factor, double size) {
   return errors;
 }
 
-/// Errors of all kinds, each of at most this size.
+/// Random values for all errors, uniform between -size and size (m, rad).
 Errors all_errors(double size, unsigned seed) {
   std::mt19937_64 engine(seed);
   Errors errors(kFactors);
@@ -57,8 +57,8 @@ Errors all_errors(double size, unsigned seed) {
   return errors;
 }
 
-/// By how much the carriages have to move back so that the least is left of what these errors do, from solves of the
-/// first-order mechanism alone.
+/// The carriage displacements dq (m) whose effect is closest to this displacement of the platform, so that moving back
+/// by dq leaves the least. Computed from first-order solves.
 Eigen::Vector3d best_carriages(const std::vector<double>& pose, const Screw& displacement) {
   const auto model = published("first-order");
   const Configuration nominal = nominal_at(pose);
@@ -70,7 +70,7 @@ Eigen::Vector3d best_carriages(const std::vector<double>& pose, const Screw& dis
   return by_carriages.completeOrthogonalDecomposition().solve(joints(nominal, displacement));
 }
 
-/// The same errors with the carriages moved back.
+/// The errors with the carriages moved back by dq.
 Errors with_carriages(Errors errors, const Eigen::Vector3d& dq) {
   for (std::size_t i = 0; i < kLimbs; ++i) errors[factor_of(i, Source::q)] -= dq[static_cast<Eigen::Index>(i)];
   return errors;
@@ -105,7 +105,7 @@ TEST(Calibrated, LeavesTheResidualOfEveryError) {
   }
 }
 
-/// Of errors whose whole effect enters through the carriages nothing is left.
+/// Nothing is left of errors whose whole effect enters through the carriages.
 TEST(Calibrated, RemovesWhatTheCarriagesCanMove) {
   for (const std::vector<double>& pose : random_poses(5, 22)) {
     const Separation truth = separation({}, nominal_at(pose));
@@ -118,7 +118,8 @@ TEST(Calibrated, RemovesWhatTheCarriagesCanMove) {
       const Solved exact = solve(*corrected("exact"), pose, errors);
       for (std::size_t r = 0; r < kResponses; ++r) {
         EXPECT_NEAR(first.responses[r], 0.0, 2e-17) << f << " " << r;
-        // Second order, which the correction does not see, for a thousandth of the mechanism's size.
+        // Second-order effects remain, because the correction is linear; the errors are a thousandth of the mechanism's
+        // size.
         EXPECT_NEAR(exact.responses[r], 0.0, 2e-5) << f << " " << r;
       }
     }
@@ -137,7 +138,7 @@ TEST(Calibrated, IsTheMechanismWithItsCarriagesMoved) {
     EXPECT_LE(largest_difference(solve(*corrected("first-order"), pose, errors),
                                  solve(*first_order, pose, with_carriages(errors, dq))),
               1e-15);
-    // Exact solves differ by second order: of half the errors by a quarter.
+    // Exact solves differ by second-order terms: with half the errors, the difference is a quarter.
     const auto difference = [&](double size) {
       Errors smaller = errors;
       for (double& error : smaller) error *= size;
@@ -170,7 +171,7 @@ TEST(Calibrated, IsLinearToFirstOrder) {
   }
 }
 
-/// Two errors together are left with less than the sum of both, and their responses belong to each other.
+/// Two errors are corrected together, and the responses of the corrected platform are consistent with each other.
 TEST(Calibrated, CorrectsTwoErrorsAtOnce) {
   for (const std::vector<double>& pose : random_poses(3, 28)) {
     const Configuration nominal = nominal_at(pose);
@@ -180,7 +181,7 @@ TEST(Calibrated, CorrectsTwoErrorsAtOnce) {
       errors[factor_of(1, Source::c)] = 1e-3;
       const Solved found = solve(*model, pose, errors);
       const Screw left = displacement_of(found);
-      // No further correction: what is left is at right angles to what each carriage does.
+      // No further correction is possible: the rest is orthogonal to the effect of each carriage.
       EXPECT_LE(best_carriages(pose, left).norm(), 1e-16 + 1e-13 * left.norm()) << fidelity;
       const Eigen::Vector3d arm = tool({}, nominal.platform.R);
       const Eigen::Vector3d theta = left.head<3>();
@@ -195,7 +196,7 @@ TEST(Calibrated, CorrectsTwoErrorsAtOnce) {
   }
 }
 
-/// A sample depends on itself alone, with and without details.
+/// A sample has the same outcome alone and in a block, with and without details.
 TEST(Calibrated, GivesABlockAsItsSamples) {
   constexpr std::size_t kCount = 67;
   const std::vector<double> pose = random_poses(1, 29).front();

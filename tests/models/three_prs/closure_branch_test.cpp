@@ -5,7 +5,7 @@
 
 #include "tests/models/three_prs/closure_samples.h"
 
-// Solves of steep poses that come to rest at another root than the one that continues from zero error.
+// Tests solves at steep poses that converge to another root than the one that continues from zero error.
 
 namespace poesy::three_prs {
 namespace {
@@ -27,13 +27,13 @@ std::vector<std::vector<double>> steep_poses(std::size_t count) {
   return poses;
 }
 
-/// The sample with all its errors as large as this share of them.
+/// The sample with all its errors multiplied by `share`.
 ClosureSamples scaled(ClosureSamples sample, double share) {
   for (double& value : sample.values) value *= share;
   return sample;
 }
 
-/// The motion that continues from zero error, in steps; nothing where a step does not end or is a leap.
+/// The platform motion that is followed from zero error in steps. None if a step does not converge or is too large.
 std::optional<PlatformMotion> continued(const ClosureSamples& sample) {
   constexpr int kSteps = 200;
   constexpr double kLeap = 0.3;  // rad or m in a step
@@ -70,7 +70,8 @@ TEST(ClosureBranch, ARootOnTheOtherSideOfASingularPoseIsNotSolved) {
           branch && (branch->E - any_root.E).norm() < 1e-6 && (branch->dr - any_root.dr).norm() < 1e-6;
       const bool marked = found.status[b] == SolveStatus::singular;
       ASSERT_TRUE(!on_branch || solved(found.status[b])) << "a root on the branch is never marked";
-      // Of a solve that wanders, rounding decides where it comes to rest.
+      // If a solve does not converge directly, rounding decides which root it finds. So only equal motions are
+      // compared.
       if ((reference.motion(b) - found.motion(b)).norm() < 1e-9) {
         ASSERT_EQ(reference.status[b] == SolveStatus::singular, marked) << "alone as in a block";
         alike += marked ? 1 : 0;

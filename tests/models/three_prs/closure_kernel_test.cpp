@@ -6,7 +6,7 @@
 #include "tests/models/three_prs/closure_samples.h"
 #include "tests/support/isa.h"
 
-// The kernels of every instruction set against close_limbs.
+// Compares the kernels of every instruction set with close_limbs().
 
 namespace poesy::three_prs {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Blocks of errors of this size: all varied, and single ones of every source.
+/// Blocks of samples with errors of this standard deviation (m, rad): all errors vary, or a single one.
 std::vector<ClosureSamples> every_block(double size, std::size_t count) {
   std::mt19937_64 engine(11);
   std::vector<ClosureSamples> all;
@@ -39,7 +39,7 @@ TEST_P(EveryClosureKernel, EndsAsTheReferenceDoes) {
       const ClosureOutcome found = solve(samples, options);
       const ClosureOutcome truth = solve_by_reference(samples, options);
       for (std::size_t b = 0; b < samples.count; ++b, ++total) {
-        // Newton that strays before it converges makes rounding large.
+        // If Newton takes long to converge, rounding errors become large.
         if (truth.iterations[b] > 8) continue;
         ++compared;
         ASSERT_EQ(found.status[b], truth.status[b]) << size;
@@ -101,7 +101,7 @@ TEST_P(EveryClosureKernel, SaysWhereNothingIsFinite) {
 }
 
 TEST_P(EveryClosureKernel, SaysWhereThePoseIsSingular) {
-  // Rods that lie flat.
+  // The rods are horizontal, which is singular.
   std::mt19937_64 engine(17);
   ClosureSamples samples = all_varied({0.0, 0.0, 0.7}, 0.0, 21, engine);
   samples.geometry.l = samples.geometry.a - samples.geometry.c;
@@ -114,7 +114,7 @@ TEST_P(EveryClosureKernel, SaysWhereThePoseIsSingular) {
   }
 }
 
-/// A source that has no effect alone, by so much that its sine and cosine are out of the kernels' range.
+/// An error that has no effect alone is so large that its sine and cosine are out of the kernels' range.
 TEST_P(EveryClosureKernel, TakesAnglesOfManyTurns) {
   std::mt19937_64 engine(19);
   ClosureSamples samples =
@@ -126,7 +126,7 @@ TEST_P(EveryClosureKernel, TakesAnglesOfManyTurns) {
   }
 }
 
-/// Carriages that drive the platform from one pose to another: rotations of the platform of every size.
+/// Carriage errors that move the platform from one pose to another, with rotations of up to more than 1.5 rad.
 TEST_P(EveryClosureKernel, TurnsThePlatformByLargeAngles) {
   double largest = 0.0;
   for (const double tilt : {0.1, 0.3, 0.6, 0.8}) {
@@ -150,8 +150,8 @@ TEST_P(EveryClosureKernel, TurnsThePlatformByLargeAngles) {
   EXPECT_GT(largest, 1.5);
 }
 
-/// Spherical joints that stand turned about z, on a circle of another radius, turn the platform back: up to more than
-/// what the kernels' logarithm takes.
+/// The spherical joints are turned about z on a circle of another radius, which turns the platform back. The largest
+/// angles are beyond the range of the kernels' logarithm.
 TEST_P(EveryClosureKernel, TurnsThePlatformAThirdOfATurn) {
   struct Turn {
     double radius;

@@ -8,16 +8,17 @@
 #include "tests/models/three_prs/closure_samples.h"
 #include "tests/support/isa.h"
 
-// A sample's result depends on nothing but the sample: not on its neighbours, its position or the block's size.
+// Tests that a sample's outcome depends only on the sample, not on the other samples, its position or the size of the
+// block.
 
 namespace poesy::three_prs {
 namespace {
 
-constexpr std::size_t kCount = 150;  // more than two tiles
+constexpr std::size_t kCount = 150;  // more than two tiles of the kernel
 
 bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
-/// Sample b of one outcome and sample at of another, in every bit.
+/// Expects that sample b of one outcome and sample `at` of the other have the same bits.
 void expect_same(const ClosureOutcome& one, std::size_t b, const ClosureOutcome& other, std::size_t at) {
   EXPECT_EQ(one.status[b], other.status[at]) << "sample " << b;
   EXPECT_EQ(one.iterations[b], other.iterations[at]) << "sample " << b;
@@ -39,7 +40,7 @@ struct Kind {
   bool all;
   double size;
 };
-/// The large ones take many iterations, or are given up by the kernel.
+/// Samples of the large kinds need many iterations, or the kernel gives up on them.
 constexpr Kind kKinds[] = {
     {"all", true, 1e-3}, {"all_large", true, 0.1}, {"one", false, 1e-3}, {"one_large", false, 0.3}};
 
@@ -60,7 +61,7 @@ class ClosureLanes : public testing::TestWithParam<std::tuple<const char*, Kind>
     whole_.emplace(solve(samples_, {}));
   }
 
-  /// Solves these samples with one solver, in blocks of this size, and compares them with the whole.
+  /// Solves the samples in this order in blocks of this size, and expects the outcomes of the whole block.
   void expect_whole(std::span<const std::size_t> order, std::size_t block) {
     ClosureSolver solver(samples_.geometry, {});
     for (std::size_t first = 0; first < order.size(); first += block) {
@@ -135,7 +136,7 @@ TEST(ClosureIsas, WithFusedMultiplyAddsAgreeInEveryBit) {
   }
 }
 
-/// Else the tests above would prove little: samples of one block must take different ways.
+/// The tests above are only meaningful if the samples of a block need different numbers of iterations.
 TEST(ClosureKinds, DifferInIterations) {
   for (const Kind& kind : kKinds) {
     const ClosureOutcome found = solve(samples_of(kind), {});

@@ -8,11 +8,11 @@
 
 namespace poesy::three_prs {
 
-/// Samples with one pose and background in common.
+/// Samples with the same pose and the same constant errors.
 struct ClosureSamples {
   Geometry geometry;
   Configuration nominal;
-  std::vector<double> errors;  ///< [60], constant
+  std::vector<double> errors;  ///< [60] constant errors (m, rad)
   std::vector<FactorIndex> varied;
   std::size_t count = 0;
   std::vector<double> values;  ///< [varied x count]
@@ -37,7 +37,7 @@ inline Configuration configuration_at(const Geometry& geometry, const std::vecto
   return configuration(geometry, {pose[0], pose[1], pose[2]});
 }
 
-/// Normal errors of this size in m and rad, of these factors.
+/// Samples in which these errors vary normally. size: standard deviation (m, rad).
 inline ClosureSamples varied_samples(const std::vector<double>& pose, std::vector<FactorIndex> factors, double size,
                                      std::size_t count, std::mt19937_64& engine) {
   ClosureSamples samples;
@@ -57,7 +57,7 @@ inline ClosureSamples all_varied(const std::vector<double>& pose, double size, s
   return varied_samples(pose, factors, size, count, engine);
 }
 
-/// One factor varied over constant errors of the same size.
+/// Samples in which one error varies and the others are constant. size: standard deviation of all errors (m, rad).
 inline ClosureSamples one_varied(const std::vector<double>& pose, std::size_t factor, double size, std::size_t count,
                                  std::mt19937_64& engine) {
   ClosureSamples samples = varied_samples(pose, {FactorIndex(factor)}, size, count, engine);
@@ -66,7 +66,7 @@ inline ClosureSamples one_varied(const std::vector<double>& pose, std::size_t fa
   return samples;
 }
 
-/// The samples of these positions, in this order.
+/// The samples at these positions, in this order.
 inline ClosureSamples picked(const ClosureSamples& samples, std::span<const std::size_t> positions) {
   ClosureSamples some = samples;
   some.count = positions.size();
@@ -88,7 +88,7 @@ inline ClosureOutcome solve(const ClosureSamples& samples, const SolverOptions& 
   return solve(solver, samples);
 }
 
-/// The same, one at a time, by close_limbs.
+/// Solves the samples one by one with close_limbs().
 inline ClosureOutcome solve_by_reference(const ClosureSamples& samples, const SolverOptions& options) {
   ClosureOutcome outcome(samples.count);
   const ClosureStart start(samples.geometry, samples.nominal);

@@ -54,12 +54,12 @@ TEST(LiteratureSources, AreFactorSetsThatDoNotOverlap) {
   EXPECT_EQ(seen.size(), count);
 }
 
-/// Everything by hand: one solve of the named errors at a time, straight from the evaluator.
+/// Computes effects directly with the evaluator, with one solve for each set of errors.
 class ByHand {
  public:
   ByHand(const Model& model, double size) : evaluator_(model.evaluator({})), size_(size) {}
 
-  /// The effect on one response of all errors that belongs(source, factor) takes, at one pose.
+  /// The effect on one response at pose m if all errors with belongs(source name, error) have the given size.
   template <class Belongs>
   double effect(std::size_t response, std::size_t m, const Belongs& belongs) {
     std::vector<double> errors(kModel.factors.size(), 0.0);
@@ -89,7 +89,7 @@ bool takes(const ErrorPattern& pattern, const Factor& factor) {
   return limb && axis;
 }
 
-/// Whether two factors of one source move together.
+/// Whether two errors of one source are in the same block of the pattern, so that they move together.
 bool together(const ErrorPattern& pattern, const Factor& a, const Factor& b) {
   return (pattern.limbs != Choice::independent || a.limb == b.limb) &&
          (pattern.components != Choice::independent || (a.axis == b.axis && a.frame == b.frame));
@@ -111,7 +111,7 @@ void expect_by_hand(const Model& model, const ErrorPattern& pattern) {
       double worst = 0.0;
       double squares = 0.0;
       for (const SourceSet& source : kModel.sources) {
-        std::vector<const Factor*> blocks;  // the first factor of each
+        std::vector<const Factor*> blocks;  // the first error of each block
         for (const FactorIndex index : kModel.find_set(source.set)->factors) {
           const Factor& factor = kModel.factors[index.value];
           const bool is_new =
@@ -132,7 +132,7 @@ void expect_by_hand(const Model& model, const ErrorPattern& pattern) {
       });
       constexpr double kRounding = 1e-15;
       EXPECT_NEAR(found.effect(r, 0, 0, m), fs, kRounding);
-      EXPECT_NEAR(found.effect(r, 0, 5, m), fs_r, kRounding);  // FS, T, R, L, FS+T, FS+R
+      EXPECT_NEAR(found.effect(r, 0, 5, m), fs_r, kRounding);  // 5: FS+R, after FS, T, R, L, FS+T
       EXPECT_NEAR(found.effect(r, 0, 14, m), all, kRounding);
       EXPECT_NEAR(found.sum(r, 0, 14, m), fs + t + q + l, kRounding);
       EXPECT_NEAR(found.interaction(r, 0, 14, m), all - (fs + t + q + l), 2 * kRounding);
@@ -155,8 +155,8 @@ TEST(Coupling, IsWhatSolvesByHandGiveForEveryPattern) {
   }
 }
 
-/// The largest |interaction| of any subset over the poses, and the largest |effect|, of responses in metres that are
-/// components, not norms.
+/// The largest |interaction| and the largest |effect| over all subsets and poses, for responses that are components,
+/// not norms (m, rad).
 std::pair<double, double> largest_of_components(const CouplingResult& found) {
   double interaction = 0.0;
   double effect = 0.0;

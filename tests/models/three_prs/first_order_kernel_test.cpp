@@ -6,7 +6,7 @@
 #include "tests/models/three_prs/closure_samples.h"
 #include "tests/support/isa.h"
 
-// The first-order kernels of every instruction set against the matrix of effects.
+// Compares the first-order kernels of every instruction set with the matrix of effects.
 
 namespace poesy::three_prs {
 namespace {

@@ -34,7 +34,7 @@ std::unique_ptr<Model> machine(std::string_view fidelity) {
   return machine_catalog_entry().build(published_geometry(), fidelity == "exact" ? 0 : 1);
 }
 
-/// Poses of the head in the default workspace, and slides inside their travel.
+/// Random poses: the head in its default workspace, and the slides within their travel (m).
 std::vector<std::vector<double>> machine_poses(std::size_t count, unsigned seed) {
   std::vector<std::vector<double>> poses = random_poses(count, seed);
   std::mt19937_64 engine(seed + 1000);
@@ -47,7 +47,7 @@ std::span<const double> head_of(const std::vector<double>& pose) { return std::s
 
 std::size_t place(const char* name) { return kMachine.find_factor(name)->value; }
 
-/// Normal errors, of the head and of the slides.
+/// Random normal errors. head, slides: standard deviations of their errors (m, rad).
 std::vector<double> random_errors(std::mt19937_64& engine, double head, double slides) {
   std::vector<double> errors(kAll);
   std::normal_distribution<double> normal;
@@ -55,7 +55,7 @@ std::vector<double> random_errors(std::mt19937_64& engine, double head, double s
   return errors;
 }
 
-/// What a block of samples gives.
+/// The outcomes of a block of samples.
 struct Block {
   explicit Block(std::size_t count) : responses(12 * count), details(3 * count), status(count), iterations(count) {}
   OutcomeBlock outcomes() { return {responses, status, iterations, details}; }
@@ -110,7 +110,7 @@ TEST(Slides, EveryColumnIsTheDerivativeOfTheExactMachine) {
   }
 }
 
-// An independent composition: each joint and each error as a 4 x 4 matrix.
+// An independent composition of the machine: each joint and each error is a 4 x 4 matrix.
 
 using Matrix4 = Eigen::Matrix4d;
 
@@ -126,7 +126,8 @@ Matrix4 turn(const Eigen::Vector3d& w) {
   return m;
 }
 
-/// Rack to head frame. The squareness turns what travels along y, and is taken back before the head.
+/// The transform from the rack to the head frame. The squareness error turns the direction of the y slide, but not the
+/// head.
 Matrix4 rack_M_head(const std::vector<double>& pose, std::span<const double> errors) {
   const auto e = [&](const char* name) { return errors[place(name)]; };
   const Matrix4 x_carriage = shift(pose[3] + e("x_position"), e("x_straightness_y"), e("x_straightness_z")) *
@@ -137,7 +138,7 @@ Matrix4 rack_M_head(const std::vector<double>& pose, std::span<const double> err
          turn({e("y_pitch"), e("y_roll"), e("y_yaw")});
 }
 
-/// Head frame to platform, displaced by [theta; dr].
+/// The transform from the head frame to the platform, displaced by motion = [theta; dr] (rad, m).
 Matrix4 head_M_platform(const std::vector<double>& pose, std::span<const double> motion) {
   const lie::Transform<double> nominal = base_T_platform({}, {pose[0], pose[1], pose[2]});
   Matrix4 m = shift(nominal.p.x() + motion[3], nominal.p.y() + motion[4], nominal.p.z() + motion[5]);
@@ -189,7 +190,8 @@ TEST(Machine, FirstOrderIsTheSumOfHeadAndSlides) {
 }
 
 TEST(Machine, HeadAndSlideErrorsCoupleToSecondOrder) {
-  // The exact machine leaves its first order quadratically: a tenth of the errors, a hundredth of the distance.
+  // The exact machine differs from the first order quadratically: with a tenth of the errors, the difference is a
+  // hundredth.
   const auto exact = machine("exact");
   const auto first_order = machine("first-order");
   std::mt19937_64 engine(27);
@@ -226,7 +228,7 @@ TEST(Slides, SquarenessMovesAcrossInProportionToY) {
   }
 }
 
-/// Errors of head and slides mixed in this order.
+/// The errors with these names, in this order.
 std::vector<FactorIndex> factors_named(std::initializer_list<const char*> names) {
   std::vector<FactorIndex> list;
   for (const char* name : names) list.push_back(*kMachine.find_factor(name));
@@ -286,7 +288,7 @@ TEST(Machine, ASampleDoesNotDependOnItsNeighbours) {
   }
 }
 
-/// Counts the blocks and samples that a head is asked for.
+/// A head that records the number of samples of each block that it evaluates.
 class CountingHead final : public Evaluator {
  public:
   CountingHead(std::unique_ptr<Evaluator> head, std::vector<std::size_t>& asked)
@@ -464,7 +466,7 @@ TEST(Slides, ErrorsCarryIsoSymbolsThatFitTheirComponents) {
       EXPECT_EQ(factor.frame, kFrames + 4);
       continue;
     }
-    // E, the component (X, Y, Z along; A, B, C about), the slide.
+    // The ISO symbol has E, the component (X, Y, Z: along; A, B, C: about) and the slide.
     const bool is_angle = factor.dimension == Dimension::angle;
     const auto component = static_cast<std::size_t>(factor.axis.at(0) - 'x');
     EXPECT_EQ(symbol, std::string("E") + (is_angle ? "ABC" : "XYZ")[component] + (of_x ? 'X' : 'Y')) << factor.name;

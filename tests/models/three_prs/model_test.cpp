@@ -17,7 +17,7 @@ using nlohmann::json;
 
 const ModelDescription kModel = catalog_entry().description;
 
-/// "dax1" as the place of a_x_1.
+/// The index of an error by its short name: "dax1" is a_x_1.
 std::size_t place_of(const std::string& short_name) {
   const json& names = oracle().at("names");
   const std::string source = short_name.substr(0, short_name.size() - 1);
@@ -38,7 +38,7 @@ void set(std::vector<double>& errors, std::string_view group, std::size_t limb, 
 std::vector<double> errors_of(const json& reference) {
   std::vector<double> errors(kFactors, 0.0);
   if (reference.contains("source")) {
-    errors.at(place_of(reference.at("source"))) = reference.at("value");  // angles only
+    errors.at(place_of(reference.at("source"))) = reference.at("value");  // these cases have angles only
     return errors;
   }
   for (std::size_t limb = 0; limb < kLimbs; ++limb) {
@@ -56,7 +56,8 @@ void expect_motion(const Solved& found, const json& expected) {
 }
 
 TEST(Rounding, IsAboveWhatExactSolvesOfTinyErrorsLeave) {
-  // At 1e-13 m, or rad, what is not of the first order is 1e-26: all else is rounding.
+  // With errors of 1e-13 (m, rad), second-order effects are about 1e-26, so every difference from the first order is
+  // rounding.
   constexpr double kTiny = 1e-13;
   const auto exact = published("exact");
   const auto first_order = published("first-order");
@@ -75,7 +76,7 @@ TEST(Rounding, IsAboveWhatExactSolvesOfTinyErrorsLeave) {
       }
     }
   }
-  EXPECT_GT(largest, 0.02 * exact->rounding(0));  // it is not far above either
+  EXPECT_GT(largest, 0.02 * exact->rounding(0));  // the threshold is not far too large
   EXPECT_EQ(first_order->rounding(0), 0.0);
 }
 
@@ -157,7 +158,8 @@ TEST(Exact, SourcesWithoutEffectMoveNothingAlone) {
   }
 }
 
-/// Largest |tip displacement| along x, y, z (mm) on trajectory 1, 30 (cos pi t, sin pi t, t) mm, errors of 0.1 mm.
+/// The largest |tip displacement| along x, y and z (mm) on trajectory 1, 30 (cos pi t, sin pi t, t) mm. The errors of
+/// the group are 0.1 mm in the first `limbs` limbs.
 std::array<double, 3> trajectory_maxima(const Model& model, std::string_view group, std::size_t limbs) {
   std::vector<double> errors(kFactors, 0.0);
   for (std::size_t limb = 0; limb < limbs; ++limb) set(errors, group, limb, 1e-4);
@@ -191,7 +193,7 @@ TEST(FirstOrder, MaximaOnTrajectory1) {
 
 TEST(Model, BlockOfVariedErrorsEqualsSingleSolves) {
   const std::vector<FactorIndex> varied{*kModel.find_factor("theta_A_x_2"), *kModel.find_factor("c_y_3")};
-  constexpr std::size_t kCount = 131;  // more than two tiles
+  constexpr std::size_t kCount = 131;  // more than two tiles of the kernel
   std::vector<double> values(2 * kCount);
   std::mt19937_64 engine(6);
   for (double& value : values) value = std::normal_distribution<double>(0.0, 2e-3)(engine);
@@ -288,7 +290,7 @@ TEST(Model, WorkspaceIsReachableAndRegular) {
       }
     }
   }
-  // The box leaves less than 10 mm of the rails unused.
+  // The workspace leaves less than 10 mm of the rails unused at each end.
   EXPECT_LT(lowest, 0.01);
   EXPECT_GT(highest, 0.49);
 }

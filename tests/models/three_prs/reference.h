@@ -32,7 +32,7 @@ inline std::unique_ptr<Model> published(std::string_view fidelity) {
   return entry.build(geometry, fidelity == "exact" ? 0 : 1);
 }
 
-/// What one sample gives. Responses and details as the model lists them.
+/// The outcome of one sample. Responses and details are in the order of the model.
 struct Solved {
   std::array<double, 12> responses{};
   std::array<double, 3> swing{};
@@ -47,7 +47,7 @@ inline Solved solve(const Model& model, std::span<const double> pose, std::span<
   return out;
 }
 
-/// Poses inside the default workspace.
+/// Random poses in the default workspace.
 inline std::vector<std::vector<double>> random_poses(std::size_t count, unsigned seed) {
   const ModelDescription description = catalog_entry().description;
   std::mt19937_64 engine(seed);

@@ -15,7 +15,7 @@ using Twist = Eigen::Matrix<double, 6, 1>;
 
 Configuration nominal_at(const std::vector<double>& pose) { return configuration({}, {pose[0], pose[1], pose[2]}); }
 
-/// The root mean square displacement of the spherical joints, from its definition; finite rotations too.
+/// The root mean square displacement of the spherical joints (m) by its definition, also for finite rotations.
 double joint_displacement(const Configuration& nominal, const lie::Vector3<double>& theta,
                           const lie::Vector3<double>& dr) {
   double sum = 0.0;
@@ -33,7 +33,7 @@ double measure(const Configuration& nominal, const Twist& twist) {
   return std::sqrt(sum / 3.0);
 }
 
-/// How far the exact mechanism moves with these errors.
+/// The joint_displacement() (m) of the exact mechanism with these errors.
 double exact_displacement(const Model& exact, const std::vector<double>& pose, const std::vector<double>& errors) {
   const Solved found = solve(exact, pose, errors);
   EXPECT_TRUE(solved(found.status));
@@ -41,8 +41,9 @@ double exact_displacement(const Model& exact, const std::vector<double>& pose, c
                             Eigen::Vector3d(found.responses.data() + 3));
 }
 
-/// The smallest displacement of the exact mechanism over corrections of its carriages, each a q error. Its square is a
-/// parabola in each correction alone: one after the other is moved to its vertex, until they rest.
+/// The smallest displacement (m) of the exact mechanism over all corrections of its carriages, which are changes of the
+/// q errors. The squared displacement is a parabola in each correction; the corrections are moved to its vertex in turn
+/// until they converge.
 double smallest_displacement(const Model& exact, const std::vector<double>& pose, std::vector<double> errors,
                              double step) {
   const auto square = [&] { return std::pow(exact_displacement(exact, pose, errors), 2); };
@@ -74,7 +75,7 @@ TEST(Separation, ResidualIsWhatNoCorrectionRemoves) {
       errors[f] = kStep;
       const double effect = exact_displacement(*exact, pose, errors) / kStep;
       EXPECT_NEAR(found.effect[f], effect, 1e-5);
-      if (f == factor_of(0, Source::q)) continue;  // the correction itself
+      if (f == factor_of(0, Source::q)) continue;  // this error is itself a correction
       EXPECT_NEAR(found.residual[f], smallest_displacement(*exact, pose, errors, kStep) / kStep, 1e-4) << f;
     }
   }

@@ -14,7 +14,7 @@ std::unique_ptr<Model> with_tool(double h) {
   return catalog_entry().build(std::vector{g.a, g.c, g.l, g.rail, h}, 0);
 }
 
-/// A whole curve of the paper, from the default origin.
+/// A selection of poses along a whole curve of the paper, from its default origin.
 PoseSelection curve(const Model& model, std::size_t position, std::size_t points) {
   const NamedCurve& curve = model.description().curves.at(position);
   PoseSelection selection;

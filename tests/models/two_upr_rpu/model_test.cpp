@@ -24,7 +24,7 @@ std::unique_ptr<Model> published() {
   return entry.build(geometry, 0);
 }
 
-/// Reference cases computed independently: see the note in the file.
+/// Reference cases that were computed independently; see the note in the JSON file.
 json oracle_cases() {
   std::ifstream file(std::string(POESY_TEST_DATA) + "/deformation_2upr_rpu.json");
   return json::parse(file).at("cases");
@@ -73,7 +73,7 @@ TEST(Rounding, IsAboveWhatErrorsWithoutEffectLeaveAtAnySize) {
       }
     }
   }
-  EXPECT_GT(largest, 0.02 * model->rounding(0));  // it is not far above either
+  EXPECT_GT(largest, 0.02 * model->rounding(0));  // the threshold is not far too large
 }
 
 TEST(Oracle, JointDisplacements) {

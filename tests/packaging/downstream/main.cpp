@@ -1,5 +1,5 @@
-// Uses poesy as somebody else's program does: a small study of each mechanism of the registry is written to a file,
-// read again and run, and its result is written and verified.
+// Uses poesy like a program of a user: writes a small study of each mechanism of the registry to a file, reads and runs
+// it, and writes and verifies its result.
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -39,7 +39,7 @@ bool some_index_is_positive(const poesy::SensitivityResult& result) {
   return false;
 }
 
-/// Runs the study of a file and writes its result. Whether that has an index above zero.
+/// Runs the study of a file and writes its result. Returns whether the result has an index above zero.
 bool run_file(const std::string& path, const std::string& result_path) {
   const poesy::Study study = poesy::read_study(path, poesy::registry(), poesy::StudyUse::run);
   const auto model = poesy::build_model(study.mechanism);

@@ -1,4 +1,5 @@
-// Mean squares and loads of calibrated machines, against linear algebra of this test with differences of plain solves.
+// Compares mean squares and loads of calibrated machines with the linear algebra of this test, which uses finite
+// differences of uncalibrated solves.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +24,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kSigma = 3e-6;  // m, so small that the second order is a millionth of the first
+constexpr double kSigma = 3e-6;  // m, so small that second-order effects are a millionth of first-order effects
 constexpr double kNoise = 1e-6;  // m
 constexpr std::size_t kPlaces = 7;
 const char* const kAllocated = R"(
@@ -32,7 +33,8 @@ factors = "linear"
 each    = true
 )";
 
-/// The text of the printer's study.
+/// The text of an allocation study of the printer. fit: the value of the key `fit`; more: further keys of
+/// [analysis.calibration].
 std::string study_text(const std::string& fit, const std::string& more) {
   return R"(format = "poesy-study"
 version = 1
@@ -62,7 +64,7 @@ struct Printers {
         calibration(study, *model, poses) {}
 
   MeanSquares squares() const { return squares_at(study); }
-  /// The mean squares at the sizes of another study, with the calibration at the first one's.
+  /// The mean squares with the sigmas of `other`, but with the calibration gain for the sigmas of this study.
   MeanSquares squares_at(const Study& other) const {
     return *mean_squares(Plan(other, poses), *model, other.analysis.limits, 0, {.threads = 2}, &calibration);
   }
@@ -82,7 +84,7 @@ struct Printers {
   MachineCalibration calibration;
 };
 
-/// [3 M x P] The derivatives of x, y, z at each pose by the errors that vary, by central differences.
+/// [3 poses x errors] The derivatives of x, y and z at each pose by the errors that vary, by central differences.
 MatrixXd derivatives(const Printers& printers) {
   constexpr double kStep = 1e-5;  // m
   const ModelDescription& description = printers.model->description();
@@ -109,12 +111,13 @@ MatrixXd derivatives(const Printers& printers) {
   return G;
 }
 
-/// What is left of errors and noise to first order: x, y, z at each pose.
+/// The first-order maps from the errors and from the measurement noise to x, y and z at each pose after calibration.
 struct LeftMap {
-  MatrixXd errors;  ///< [3 M x P]
-  MatrixXd noise;   ///< [3 M x 2 M]
+  MatrixXd errors;  ///< [3 poses x errors]
+  MatrixXd noise;   ///< [3 poses x 2 poses]
 
-  /// fitted: for each number the names of its errors. with_prior: whether the fit knows that they have kSigma.
+  /// fitted: for each fitted number, the names of its errors. with_prior: whether the fit uses kSigma of the errors as
+  /// prior.
   LeftMap(const Printers& printers, const std::vector<std::vector<std::string>>& fitted, bool with_prior) {
     const MatrixXd G = derivatives(printers);
     MatrixXd F = MatrixXd::Zero(G.cols(), static_cast<Index>(fitted.size()));
@@ -134,7 +137,8 @@ struct LeftMap {
     MatrixXd information = A.transpose() * A;
     if (with_prior) information += F.transpose() * F / (kSigma * kSigma);
     const MatrixXd gain = information.inverse() * A.transpose() / kNoise;
-    // The platform's coordinates are those that are commanded, so a fitted number takes all of its displacement away.
+    // All coordinates of the platform are commanded, so the controller removes the whole displacement of a fitted
+    // number.
     errors = G - G * F * gain * J;
     noise = -G * F * gain;
   }
@@ -144,7 +148,7 @@ const std::vector<std::vector<std::string>> kFour{
     {"zero_1"}, {"zero_2"}, {"zero_3"}, {"foot_x_1", "foot_x_2", "foot_x_3"}};
 const char* const kFourText = R"(["zero_1", "zero_2", "zero_3", "radius"])";
 
-/// The study calibrates by least squares, or knows the tolerances; which is stronger than the noise in some directions.
+/// Calibration by least squares, and with the tolerances as prior, which in some directions outweighs the measurements.
 TEST(CalibratedMeanSquares, AreThoseOfTheResidualMap) {
   for (const bool with_prior : {false, true}) {
     const Printers printers(kFourText, with_prior ? "prior = \"tolerances\"" : "");
@@ -170,17 +174,18 @@ TEST(CalibratedMeanSquares, AreThoseOfTheResidualMap) {
         of_noise += noise / value / static_cast<double>(2 * kPlaces);
       }
     }
-    EXPECT_GT(of_noise, 0.01);  // so the test sees it
+    EXPECT_GT(of_noise, 0.01);  // the noise matters enough to be tested
   }
 }
 
-/// Where all errors are fitted with their tolerances as prior, the mean squares with the gain of some sizes touch those
-/// of the right gain at these sizes, and are nowhere below.
+/// All errors are fitted, with their tolerances as prior. Mean squares with a gain that is kept from the first
+/// tolerances are upper bounds: they equal the mean squares with the right gain at the first tolerances and are larger
+/// at others.
 TEST(CalibratedMeanSquares, TouchTheRightOnesFromAbove) {
   const Printers printers("\"all\"", "prior = \"tolerances\"");
   const MeanSquares kept = printers.squares();
   const std::size_t errors = printers.study.analysis.factors.size();
-  // Returns the largest and the least ratio of both at sizes with these factors.
+  // Returns the least and the largest ratio of the kept to the right mean squares, with all sigmas times these factors.
   const auto ratios = [&](const VectorXd& factors) {
     const Study other = printers.with_sigmas(factors);
     const MachineCalibration calibration = printers.calibration.of(other);
@@ -209,7 +214,7 @@ TEST(CalibratedMeanSquares, TouchTheRightOnesFromAbove) {
   EXPECT_LT(near_largest, 1.0 + 1e-3);
 }
 
-/// A variation is calibrated with the noise of its machine: it is a machine of the study with that size.
+/// A variation of a machine is calibrated with the same noise: it equals the machine of a study with the changed sigma.
 TEST(CalibratedVariations, AreMachinesOfThatSize) {
   const Printers printers(kFourText, "");
   const std::vector<std::uint32_t> machines{3, 5, 6, 39, 40, 41, 250};
@@ -234,7 +239,7 @@ TEST(CalibratedVariations, AreMachinesOfThatSize) {
   }
 }
 
-/// The seed determines the noise as it does the errors.
+/// The seed determines the measurement noise too, not only the errors.
 TEST(CalibratedLoads, ChangeWithTheSeed) {
   const Printers printers(kFourText, "");
   const std::vector<std::uint32_t> machines{0, 1, 2};

@@ -21,7 +21,7 @@ TEST(SpreadOfErrors, WithAShiftHasWhatTheShiftLeaves) {
 }
 
 TEST(PartsOfADrawing, HaveTheEffectsOfTheirErrors) {
-  const std::vector<double> effects{1.0, 2.0, 4.0, 0.5, 0.0, 0.25};  // two limits, three errors
+  const std::vector<double> effects{1.0, 2.0, 4.0, 0.5, 0.0, 0.25};  // [limits x errors], two limits and three errors
   const auto square = [](double sigmas) { return mean_square_per_tolerance({sigmas}); };
   const std::vector<DrawnPart> parts{{{{{0, 2}, square(2.0)}}}, {{{{1}, square(3.0)}}}};
   EXPECT_EQ(part_effects(effects, 3, parts),

@@ -17,7 +17,7 @@
 namespace poesy {
 namespace {
 
-/// Equal bit by bit, but for NaN, which equals NaN.
+/// Expects equal numbers. NaN equals NaN.
 void expect_same(std::span<const double> found, std::span<const double> expected) {
   ASSERT_EQ(found.size(), expected.size());
   for (std::size_t k = 0; k < found.size(); ++k) {
@@ -45,7 +45,8 @@ class AllocationFile : public testing::Test {
 
   StoredResult stored() const { return read_result(path_); }
 
-  /// What reading says of the file after one of its objects was replaced by another; empty: it was read.
+  /// The message of the error when the file is read after its object `replaced` became a link to the object `by`. Empty
+  /// if it was read without an error.
   std::string problem_with(const std::string& replaced, const std::string& by) const {
     write();
     const hid_t file = H5Fopen(path_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
@@ -60,7 +61,7 @@ class AllocationFile : public testing::Test {
     return {};
   }
 
-  /// A text file of the exported tables.
+  /// The content of the exported table NAME.csv.
   std::string csv(const std::string& name) const {
     const std::string tables = folder_.file("tables");
     export_tables(stored(), tables);

@@ -10,11 +10,11 @@
 #include "engine/kinds/study_run.h"
 #include "tests/support/function_model.h"
 
-/// Studies of the tolerances of functions.
+/// Allocation studies whose model is a plain function of the errors.
 namespace poesy::test {
 
-/// The share of a normal within three standard deviations: with it a limit on values is three times that on root mean
-/// squares, as the literature takes it.
+/// The probability of a normal variable within three standard deviations. With this yield a limit on values is three
+/// times the limit on root mean squares, as in the literature.
 inline const double kThreeSigma = std::erf(3.0 / std::sqrt(2.0));
 
 inline AllocatedPart part_of(std::size_t factor, const StatedCost& cost) {
@@ -33,13 +33,13 @@ inline StatedCost reciprocal(double a, double b) {
   return cost;
 }
 
-/// A study of a function's tolerances: response 0 within `limit`.
+/// An allocation study of a function with the limit |response 0| <= limit.
 struct FunctionStudy {
   FunctionStudy(std::size_t errors, ErrorFunction function, double limit, std::size_t machines)
       : model(errors, {"y"}, std::move(function)), entry{model.description(), nullptr} {
     study = function_study(entry, kAllocationStudy, Distribution::normal(0.05), machines);
     study.analysis.draws = Draws::per_machine;
-    study.poses.workspace = {{0.0, 1.0}};  // its text is kept
+    study.poses.workspace = {{0.0, 1.0}};  // the text of the certificate's study states the workspace
     study.analysis.limits = {{0, limit}};
     asked().yield = kThreeSigma;
   }
@@ -62,7 +62,7 @@ inline void weighted_sum(std::span<const double> x, double, std::span<double> y)
   for (std::size_t i = 0; i < kCoefficients.size(); ++i) y[0] += kCoefficients[i] * x[i];
 }
 
-/// Three errors of one linear response, each a part with a reciprocal cost.
+/// One response, the sum of three errors times kCoefficients. Each error is a part with a reciprocal cost.
 inline FunctionStudy weighted_sum_study(std::size_t machines = 200'000) {
   FunctionStudy study(3, weighted_sum, 1.0, machines);
   study.asked().yield = 0.99;

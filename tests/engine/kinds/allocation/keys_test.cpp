@@ -24,7 +24,7 @@ using Factors = std::vector<FactorIndex>;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// The first length makes sense up to the arm, the second up to a hole, the angle up to three radians.
+/// Bounds of the errors: delta_1 (length) the arm, epsilon_1 (angle) 3 rad, delta_2 (length) a hole of 10 mm.
 class BoundedModel final : public test::FakeModel {
  public:
   using FakeModel::FakeModel;
@@ -58,7 +58,8 @@ Study read(const std::string& text, const Catalog& models = kCatalog, StudyUse u
 const std::string kLimits = "limits = { linear_deformation = \"0.03 mm\" }\n";
 const std::string kSigmas = "sigmas = 3\n";
 
-/// A study of the fake mechanism: errors delta_1, epsilon_1 (an angle) and delta_2, the last of limb 2.
+/// The text of a study of the fake mechanism. Its errors are delta_1 and epsilon_1 (an angle) of limb 1 and delta_2 of
+/// limb 2.
 std::string with_analysis(const std::string& analysis, const std::string& errors = "") {
   return "format = \"poesy-study\"\nversion = 1\nmechanism = { model = \"fake\" }\nposes = { count = 3 }\n" + errors +
          "[analysis]\nkind = \"allocation\"\n" + analysis;
@@ -74,7 +75,7 @@ std::vector<AllocatedPart> parts_of(const std::string& parts) {
   return options_of(study_of(kLimits + kSigmas + parts)).parts;
 }
 
-/// The only part of one block.
+/// The part of a study with one block of parts. keys: the keys of this block.
 AllocatedPart part_of(const std::string& keys) {
   const std::vector<AllocatedPart> parts = parts_of("[[analysis.parts]]\n" + keys);
   EXPECT_EQ(parts.size(), 1u);
@@ -228,7 +229,7 @@ processes = [
   EXPECT_EQ(part.processes[1].hi, std::numeric_limits<double>::infinity());
 }
 
-/// The cost of an error, which is a length, at this tolerance.
+/// The cost of this tolerance (m) of an error. cost: the value of the key `cost`.
 double cost_at(const std::string& cost, double tolerance, const std::string& error = "delta_1") {
   return part_of("factors = [\"" + error + "\"]\ncost = " + cost + "\n").cost.cost_law().at(tolerance);
 }
@@ -276,7 +277,8 @@ TEST(BlockOfParts, JoinsOnlyErrorsOfOneFrameAndDimension) {
   }
 }
 
-/// A study in which each error of a mechanism of the registry is a part, but errors of these limbs share one.
+/// A study of a mechanism of the registry in which each error is a part, but the same errors of the given limbs share
+/// one part.
 Study study_of_limbs(const std::string& model, const std::string& limit, const std::string& limbs) {
   return read("format = \"poesy-study\"\nversion = 1\nmechanism = { model = \"" + model +
                   "\" }\nposes = { count = 3 }\n[analysis]\nkind = \"allocation\"\nsigmas = 3\nlimits = { " + limit +
@@ -339,7 +341,7 @@ TEST(PartOfADrawing, MayBeRoundedToStepsOfAWorkshop) {
   EXPECT_EQ(series.round->up(0.0), 0.0);
 }
 
-/// What a part is, every number with all its bits.
+/// Expects that all members of two parts are equal. Numbers must be equal in every bit.
 void expect_same(const AllocatedPart& a, const AllocatedPart& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.factors, b.factors);
@@ -380,7 +382,8 @@ void expect_reads_back(const std::string& written, const Catalog& models = kCata
   }
 }
 
-/// A study in which every key of parts, costs and processes has a value; numbers of many digits.
+/// The analysis of a study that sets every key of parts, costs and processes. The numbers have many digits, so that
+/// lost digits would be seen.
 const std::string kEveryKey = kLimits + R"(yield = 0.987654321
 confidence = 0.912345678
 samples = 12345
@@ -496,9 +499,9 @@ TEST(SharedKeys, OfAnotherKindAreRefusedOrIgnoredAsBefore) {
 
 struct BadStudy {
   const char* name;
-  std::string analysis;  ///< the place of the mistake marked with ^
+  std::string analysis;  ///< text of [analysis]; a ^ marks the place of the mistake
   std::vector<std::string> words;
-  std::string errors = {};  ///< [errors]
+  std::string errors = {};  ///< text of [errors]
 };
 
 void PrintTo(const BadStudy& bad, std::ostream* out) { *out << bad.name; }
@@ -548,7 +551,7 @@ TEST(StudyOfTolerances, AsksForLimitsAndParts) {
                            {"'parts' is missing in [analysis]", "[[analysis.parts]]"});
 }
 
-/// One block, and how many standard deviations a tolerance is.
+/// The analysis of a study with one block of parts. keys: the keys of the block.
 std::string block(const std::string& keys) { return kLimits + kSigmas + "[[analysis.parts]]\n" + keys; }
 
 std::string of_delta(const std::string& keys) { return block("factors = [\"delta_1\"]\n" + keys); }

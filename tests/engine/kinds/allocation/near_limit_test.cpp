@@ -1,4 +1,4 @@
-// What machines near the limit tell of one coarser part, against the closed form of a normal response.
+// Compares the rejects that NearLimit estimates for a coarser part with the closed form for a normal response.
 
 #include "engine/kinds/allocation/near_limit.h"
 
@@ -17,10 +17,10 @@ namespace {
 
 constexpr std::size_t kMachines = 149'000;
 constexpr double kStep = 1.05;
-/// Standard deviations of the response up to the limit: 310 rejects of all machines.
+/// The limit divided by the standard deviation of the response, so that 310 of all machines are rejects.
 const double kBound = normal_quantile(1.0, 1.0 - 0.5 * 310.0 / static_cast<double>(kMachines));
 
-/// Machines whose response is normal, one part of which has this share of its mean square.
+/// Machines with a normal response. share: the share of one part in the mean square of the response.
 class NormalMachines {
  public:
   NormalMachines(double share, std::uint64_t seed) : others_(kMachines), part_(kMachines) {
@@ -35,7 +35,7 @@ class NormalMachines {
   }
 
   NearLimit near(std::size_t count) const { return {numbers_, loads(numbers_, 1.0), count}; }
-  /// Of these machines with the part's error times a factor.
+  /// The loads of machines, with the error of the part multiplied by `factor`.
   std::vector<double> loads(const std::vector<std::uint32_t>& machines, double factor) const {
     std::vector<double> loads;
     for (const std::uint32_t s : machines) loads.push_back(std::abs(others_[s] + factor * part_[s]));
@@ -63,7 +63,7 @@ double exact(double share) {
 struct MeanOfSets {
   double mean;
   double error;  ///< standard error
-  int positive;  ///< sets with a value above zero
+  int positive;  ///< number of sets with an estimate above zero
 };
 
 constexpr int kSets = 20;
@@ -87,7 +87,7 @@ MeanOfSets over_sets(double share, std::size_t count, Estimate estimate) {
 const auto kPlain = [](const NormalMachines& machines, const NearLimit& near) { return machines.plain(near); };
 const auto kMirrored = [](const NormalMachines& machines, const NearLimit& near) { return machines.mirrored(near); };
 
-// Loads fall off faster the larger they are, which the window evens out: 5 % for many machines. 4.5 standard errors.
+// Allows 4.5 standard errors, and 3 % for the bias of the window: the density of the loads is not constant within it.
 TEST(NearLimit, TellsWhatAPartDoes) {
   for (const double share : {0.3, 0.05}) {
     for (const auto& found : {over_sets(share, 700, kPlain), over_sets(share, 700, kMirrored)}) {
@@ -98,13 +98,13 @@ TEST(NearLimit, TellsWhatAPartDoes) {
 }
 
 TEST(NearLimit, TellsWhatAPartDoesThatHardlyDoesAnything) {
-  constexpr double kShare = 5e-5;  // 0.008 rejects
+  constexpr double kShare = 5e-5;  // a coarser part adds 0.008 rejects
   const MeanOfSets plain = over_sets(kShare, 700, kPlain);
   const MeanOfSets mirrored = over_sets(kShare, 3000, kMirrored);
   EXPECT_NEAR(plain.mean, exact(kShare), 4.5 * plain.error);
   EXPECT_NEAR(mirrored.mean, exact(kShare), 4.5 * mirrored.error + 0.1 * exact(kShare));
   EXPECT_LT(mirrored.error, 0.15 * plain.error);
-  EXPECT_LT(plain.positive, kSets);  // noise
+  EXPECT_LT(plain.positive, kSets);  // the plain estimate is mostly noise
   EXPECT_EQ(mirrored.positive, kSets);
 }
 
@@ -125,19 +125,19 @@ TEST(NearLimit, TakesTheNearestMachines) {
   EXPECT_EQ(machines.near(1).window(), 0.02);
 }
 
-// Loads by hand: one machine within the window of 0.2, two above it, of which one is not solved.
+// Loads by hand: one machine is within the window of half-width 0.2, and two are above it; one of them has no solution.
 TEST(NearLimit, CountsByDegrees) {
   const std::vector<std::uint32_t> numbers{1, 3, 5, 7};
   const std::vector<double> loads{0.5, 1.0, 1.3, HUGE_VAL};
   const NearLimit near(numbers, loads, 10);
   EXPECT_EQ(near.machines(), (std::vector<std::uint32_t>{3}));
-  const double scale = 2.0 / 2.5;  // two rejects, of which the machine at the limit is a half
+  const double scale = 2.0 / 2.5;  // two rejects, but 2.5 fractional rejects: the machine at the limit counts one half
   EXPECT_DOUBLE_EQ(near.added_rejects(std::vector{1.2}), 0.5 * scale);
   EXPECT_DOUBLE_EQ(near.added_rejects(std::vector{HUGE_VAL}), 0.5 * scale);
   EXPECT_DOUBLE_EQ(near.added_rejects(std::vector{0.0}), -0.5 * scale);
-  const double half = 0.5 * (15.0 - 0.25 * (10.0 - 0.75)) / 16.0;  // of the way to the window's end
+  const double half = 0.5 * (15.0 - 0.25 * (10.0 - 0.75)) / 16.0;  // rise of the fraction from load 1.0 to 1.1
   EXPECT_DOUBLE_EQ(near.added_rejects(std::vector{1.1}), half * scale);
-  // A mirrored machine that is far from the limit is drawn by nothing else, and counts whole.
+  // The mirrored machine is outside the window, so the antithetic pair is counted once, with weight 1.
   EXPECT_DOUBLE_EQ(near.added_rejects(std::vector{1.1}, std::vector{0.5}, std::vector{0.5}), half * scale);
   EXPECT_NEAR(near.added_rejects(std::vector{1.1}, std::vector{1.0}, std::vector{0.9}), 0.0, 1e-15);
   EXPECT_DOUBLE_EQ(near.change(std::vector{1.1}), 1.1 - 1.0);

@@ -33,13 +33,13 @@ class AllocationReport : public testing::Test {
 
   AllocationResult& found() { return found_in<AllocationResult>(result); }
 
-  /// Changes what the fresh machines show.
+  /// Changes the verdict of the certificate.
   void decide(YieldVerdict::Decision decision) {
     found().certificate.decision = decision;
     result.verdicts->yield = found().certificate;
   }
 
-  /// As an aim without costs leaves it.
+  /// Sets the result to that of an aim without costs: all costs are NaN.
   void drop_costs() {
     found().aim = Aim::equal_effect;
     found().total_cost = found().lower_bound = std::nan("");
@@ -74,7 +74,7 @@ std::vector<std::string> names(const std::vector<Table>& tables) {
   return list;
 }
 
-/// The texts of a column, by its name.
+/// The texts of the column `name` of a table.
 std::vector<std::string> column(const Table& table, const std::string& name) {
   std::vector<std::string> list;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
@@ -165,7 +165,7 @@ TEST_F(AllocationReport, PutsTheDrawingInATable) {
   EXPECT_EQ(column(table("drawing"), "errors"), (Texts{"epsilon_1", "delta_1 delta_2", "delta_3"}));
 }
 
-/// The first note of a table that begins so; empty if none does.
+/// The first note of a table that begins with `begin`. Empty if no note does.
 std::string note_of(const Table& table, std::string_view begin) {
   for (const std::string& note : table.notes) {
     if (note.starts_with(begin)) return note;
@@ -176,10 +176,10 @@ std::string note_of(const Table& table, std::string_view begin) {
 TEST_F(AllocationReport, OffersNoToleranceOfAPartWithoutEffect) {
   EXPECT_EQ(column(table("drawing"), "drawing").front(), "+-0.1 deg");
   EXPECT_EQ(note_of(table("drawing"), "no effect"), "");
-  found().mean_square_share(1) = 0.0;  // of the hinge, at its upper bound
+  found().mean_square_share(1) = 0.0;  // the hinge, whose tolerance is at its upper bound
   EXPECT_EQ(column(table("drawing"), "drawing").front(), "no effect");
   EXPECT_NE(note_of(table("drawing"), "no effect: "), "");
-  found().bound(1) = 0;  // rejected machines hold it
+  found().bound(1) = 0;  // the hinge is no longer at its upper bound
   EXPECT_EQ(column(table("drawing"), "drawing").front(), "+-0.1 deg");
 }
 
@@ -190,7 +190,7 @@ TEST_F(AllocationReport, StatesWhatIsInNoPart) {
   EXPECT_EQ(column(table("allocation_limits"), "fixed_share"), Texts{"25"});
   found().fixed_share(1) = 0.0;
   EXPECT_EQ(note_of(table("drawing"), "in no part"), "");
-  found().fixed_share = {};  // as in files of version 0.2
+  found().fixed_share = {};  // files of version 0.2 have no fixed_share
   EXPECT_EQ(note_of(table("drawing"), "in no part"), "");
 }
 
@@ -325,7 +325,7 @@ Json data(const std::string& html) {
   return Json::parse(html.substr(begin, html.find("</script>", begin) - begin));
 }
 
-/// How many numbers an array of the page has: 32-bit floats in base64.
+/// The number of elements of an array in the page's data. Arrays are 32-bit floats in base64.
 std::size_t numbers(const Json& report, const Json& name) {
   const std::string text = report["arrays"].at(name.get<std::string>());
   const std::size_t padding = text.size() - text.find_last_not_of('=') - 1;

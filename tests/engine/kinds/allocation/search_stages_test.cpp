@@ -17,7 +17,7 @@
 namespace poesy::allocation {
 namespace {
 
-/// A search for the tolerances of a weighted sum, and what it refers to.
+/// A search for the tolerances of a weighted sum, with the objects to which the search refers.
 struct Search {
   test::FunctionStudy of = test::weighted_sum_study(20'000);
   PoseSet poses{1, {0.5}};
@@ -41,7 +41,7 @@ TEST(LargestRatio, IsThatOfEitherOrder) {
   EXPECT_EQ(largest_ratio(std::vector{0.0, 1.0}, std::vector{0.0, 1.0}), 1.0);
 }
 
-// One linear response: what root mean squares allow is known.
+// For one linear response the squared slopes and the allowed root mean square are known in closed form.
 TEST(Linearise, MeasuresTheSquaresOfSlopes) {
   Search search;
   const Linearised found = linearise(search.problem, search.log);
@@ -59,7 +59,7 @@ TEST(Linearise, MeasuresTheSquaresOfSlopes) {
 TEST(Choose, FindsTheLeastShareThatIsFeasible) {
   Search search;
   const Linearised found = linearise(search.problem, search.log);
-  // Where parts can be no finer the response has this root mean square, of a limit of 1.
+  // At the finest tolerances, 0.3, the root mean square of the response is sqrt(square). The limit is 1.
   for (AllocatedPart& part : search.of.asked().parts) part.lo = 0.3;
   const SearchProblem bounded(search.run);
   double square = 0.0;
@@ -92,7 +92,7 @@ TEST(ScaleToYield, UsesAllAllowedRejectsAndScreensTheRest) {
   EXPECT_GE(other.candidate.point.tolerance[1], design.candidate.point.tolerance[1]);
 }
 
-// Of y = 3 a + b + c / 2 rejects have larger |a| than others, and c tells nothing.
+// The response is y = 3 a + b + c / 2. Rejects have a larger |a| than other machines; c hardly differs.
 TEST(PartScores, AreLargeForErrorsThatReject) {
   Search search;
   Candidate usual{search.problem.programme.at_most(std::vector{0.6, 0.01, 0.01}), {}, 0.4};

@@ -1,4 +1,4 @@
-// Tolerances of functions whose best tolerances are known: a study of them goes the way of every study.
+// Allocation studies of functions for which the optimal tolerances are known.
 
 #include <gtest/gtest.h>
 
@@ -20,14 +20,16 @@
 namespace poesy::test {
 namespace {
 
-/// The clutch's angle less its nominal value; a metre here is a millimetre there.
+/// The contact angle of the overrunning clutch minus its nominal value (rad). The errors x are numbers in mm, although
+/// the model declares them as m.
 void clutch(std::span<const double> x, double, std::span<double> y) {
   const double rollers = 0.5 * (22.86 + x[1] + 22.86 + x[2]);
   const double nominal = std::acos((55.29 + 22.86) / (101.60 - 22.86));
   y[0] = std::acos((55.29 + x[0] + rollers) / (101.60 + x[3] - rollers)) - nominal;
 }
 
-/// Parts with the processes of the literature, or one process of each without bounds.
+/// Each part has the manufacturing processes of the literature. If `fixed` is given, part i has the cost of process
+/// fixed[i] (from 1) without bounds.
 FunctionStudy clutch_study(std::size_t machines, std::vector<std::size_t> fixed = {}) {
   FunctionStudy study(4, clutch, 0.035, machines);
   struct Range {
@@ -53,7 +55,8 @@ FunctionStudy clutch_study(std::size_t machines, std::vector<std::size_t> fixed 
   return study;
 }
 
-// Of y = 3 a + 4 b + 0 c + 5 d the errors a, b and c have one variance: their squares add as 9 : 16 : 0.
+// y = 3 x0 + 4 x1 + 5 x3 + x4. The first part has the errors x0, x1 and x2 with the same variance, so their shares are
+// as 9 : 16 : 0.
 TEST(SharesWithinAPart, AreThoseOfItsErrors) {
   const auto linear = [](std::span<const double> x, double, std::span<double> y) {
     y[0] = 3.0 * x[0] + 4.0 * x[1] + 5.0 * x[3] + x[4];
@@ -62,7 +65,7 @@ TEST(SharesWithinAPart, AreThoseOfItsErrors) {
   AllocatedPart joined = part_of(0, reciprocal(0.0, 1.0));
   joined.factors = {FactorIndex(0), FactorIndex(1), FactorIndex(2)};
   study.asked().parts = {joined, part_of(3, reciprocal(0.0, 2.0))};
-  study.study.errors.by_factor[4] = Distribution::normal(1e-4);  // of no part
+  study.study.errors.by_factor[4] = Distribution::normal(1e-4);  // an error of no part
   const AllocationResult found = study.find();
   const auto& shares = found.error_mean_square_share;
   ASSERT_EQ(shares.size(), 5u);
@@ -81,7 +84,7 @@ TEST(SharesWithinALimit, StateWhatIsInNoPart) {
   };
   FunctionStudy study(3, linear, 0.05, 2000);
   study.asked().parts = {part_of(0, reciprocal(0.0, 1.0)), part_of(1, reciprocal(0.0, 2.0))};
-  study.study.errors.by_factor[2] = Distribution::normal(2e-3);  // of no part
+  study.study.errors.by_factor[2] = Distribution::normal(2e-3);  // an error of no part
   const AllocationResult found = study.find();
   const double fixed = std::pow(2.0 * 2e-3, 2);
   const double of_parts = std::pow(3.0 * found.sigma(0), 2) + std::pow(4.0 * found.sigma(1), 2);
@@ -107,7 +110,8 @@ TEST(OverrunningClutch, HasTheLeastCostWithoutBounds) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(found.stage_tolerance(0, i), best[i], 1e-7) << i;
 }
 
-// Its yield at the tolerances of least cost is .99486: n = 148 000, 4.4 standard errors, alpha = 1e-5.
+// The yield at the linear model's tolerances is 0.99486. The test allows 4.4 standard errors of n machines (alpha =
+// 1e-5).
 TEST(OverrunningClutch, IsRepairedByItsMachines) {
   const AllocationResult found = clutch_study(148'000).find();
   const auto tried = std::ranges::find(found.stages, "tried on machines", &AllocationStage::name);
@@ -120,7 +124,7 @@ TEST(OverrunningClutch, IsRepairedByItsMachines) {
   EXPECT_LE(found.design_rejects, found.design_most);
 }
 
-// The design leaves the certificate a chance of 99 %. Of 20 certificates fewer than 18 hold with a probability of 1e-3.
+// Each certificate holds with a probability of 99 %. Then the probability that fewer than 18 of 20 hold is 1e-3.
 TEST(OverrunningClutch, IsCertifiedWithOtherSeedsToo) {
   const FunctionStudy study = clutch_study(148'000);
   Study confirming = *study.run().confirming;
@@ -145,8 +149,8 @@ TEST(OverrunningClutch, AnyPartMadeCoarserAloneBreaksTheYield) {
   EXPECT_GE(judged, 2u);
 }
 
-// min of sum b_i / t_i with sum g_i^2 t_i^2 = L^2 has t_i proportional to (b_i / g_i^2)^(1/3). One response that is
-// normal: the yield is a function of the sum alone, so the programme's tolerances are those of the yield.
+// The minimum of the cost sum b_i / t_i subject to sum g_i^2 t_i^2 = L^2 has t_i proportional to (b_i / g_i^2)^(1/3).
+// Since the one response is normal, its yield depends only on this sum, so the same t_i are optimal for the yield.
 TEST(ToleranceSearch, SharesALinearLimitAsTheClosedForm) {
   const FunctionStudy study = weighted_sum_study();
   const AllocationResult found = study.find();
@@ -157,7 +161,7 @@ TEST(ToleranceSearch, SharesALinearLimitAsTheClosedForm) {
     best.push_back(std::cbrt(kPrices[i] / (kCoefficients[i] * kCoefficients[i])));
     square += std::pow(kCoefficients[i] * best[i] / 3.0, 2);
   }
-  // The design's share of rejects, whose scatter is 1 / sqrt(rejects) of it, and so a quarter of that of the sizes.
+  // The allowed share of rejects of the design determines the standard deviation 1 / z of the response.
   const double share = static_cast<double>(found.design_most) / static_cast<double>(found.design_machines);
   const double z = -normal_quantile(1.0, 0.5 * share);
   double cost = 0.0;
@@ -168,7 +172,7 @@ TEST(ToleranceSearch, SharesALinearLimitAsTheClosedForm) {
   EXPECT_NEAR(std::sqrt(found_square), 1.0 / z, 0.01 / z);
 }
 
-// So that not even a part of little effect can be coarser alone.
+// The design uses all rejects that it may have, so no part alone can be coarser, not even one with little effect.
 TEST(ToleranceSearch, LeavesNoRejectUnused) {
   const AllocationResult found = weighted_sum_study().find();
   EXPECT_EQ(found.design_rejects, found.design_most);
@@ -176,14 +180,14 @@ TEST(ToleranceSearch, LeavesNoRejectUnused) {
   for (std::size_t i = 0; i < found.parts(); ++i) EXPECT_LT(found.coarser_yield(i), most) << found.part_names[i];
 }
 
-/// Parts that can be coarser although the design's yield would still hold.
+/// Number of parts that could be coarser without breaking the yield of the design.
 std::size_t idle_parts(const AllocationResult& found) {
   const double most = 1.0 - static_cast<double>(found.design_most) / static_cast<double>(found.design_machines);
   return static_cast<std::size_t>(std::ranges::count_if(found.coarser_yield, [&](double one) { return one >= most; }));
 }
 
-// Thirty parts that each take some 2e-5 of the mean square, 0.003 rejects of 310: noise of a count would make half of
-// them look as if they could be coarser.
+// Each of thirty parts has about 2e-5 of the mean square, which is worth 0.003 of 310 rejects. If rejects were counted,
+// noise would make half of these parts look as if they could be coarser.
 TEST(ToleranceSearch, LeavesNoPartCoarserThatHardlyActs) {
   constexpr std::size_t kSmall = 30;
   const auto function = [](std::span<const double> x, double, std::span<double> y) {
@@ -200,7 +204,8 @@ TEST(ToleranceSearch, LeavesNoPartCoarserThatHardlyActs) {
   EXPECT_EQ(idle_parts(found), 0u);
 }
 
-// The last scaling takes the third part, which does nothing, off its upper bound with the others: it is put back.
+// The third part has no effect. The last scaling makes it finer together with the other parts; afterwards the search
+// must return it to its upper bound.
 TEST(ToleranceSearch, MakesAPartThatDoesNothingCoarse) {
   const auto function = [](std::span<const double> x, double, std::span<double> y) { y[0] = x[0] + x[1]; };
   std::size_t loosened = 0;
@@ -295,7 +300,8 @@ TEST(ToleranceSearch, ChoosesAmongValuesThatCanBeHad) {
   }
 }
 
-// An error that acts through another one alone: unlimited, it would be as coarse as its bound allows.
+// The second error acts only through a product with the first. If the search missed this, its tolerance would be the
+// upper bound.
 TEST(ToleranceSearch, SeesErrorsThatActThroughOthers) {
   const auto function = [](std::span<const double> x, double, std::span<double> y) {
     y[0] = x[0] + 30.0 * x[0] * x[1];
@@ -311,8 +317,9 @@ TEST(ToleranceSearch, SeesErrorsThatActThroughOthers) {
   EXPECT_LT(found.tolerance(1), 0.5);
 }
 
-// The second error does nothing below .93, which one machine of 190 exceeds at its upper bound: root mean squares,
-// which are measured with few draws, do not see it, and no limit on them keeps the yield.
+// The second error has no effect below 0.93, which one machine of 190 exceeds if its tolerance is at the upper bound.
+// The root mean squares miss this effect, because they are estimated from few draws, so no limit on them keeps the
+// yield.
 TEST(ToleranceSearch, MakesFinerWhatMeanSquaresDoNotSee) {
   const auto function = [](std::span<const double> x, double, std::span<double> y) {
     y[0] = x[0] + (std::abs(x[1]) > 0.93 ? 100.0 : 0.0);
@@ -324,7 +331,7 @@ TEST(ToleranceSearch, MakesFinerWhatMeanSquaresDoNotSee) {
   EXPECT_TRUE(found.certified());
   const auto alike = std::ranges::find(found.stages, "finer where machines fail", &AllocationStage::name);
   ASSERT_NE(alike, found.stages.end());
-  // 1 / .3 is what the first part costs if it alone uses up the yield, 1 / .95 the second.
+  // If only the first part used up the allowed rejects it would cost 1 / 0.3, and the second part 1 / 0.95.
   EXPECT_GT(found.total_cost, 1.0 / 0.3 + 1.0 / 0.95);
   EXPECT_LT(found.total_cost, 1.15 * (1.0 / 0.3 + 1.0 / 0.95));
 }
@@ -340,13 +347,14 @@ std::string refusal_of(const FunctionStudy& study) {
 
 TEST(ToleranceSearch, RefusesALimitBelowWhatOtherErrorsGive) {
   FunctionStudy study = weighted_sum_study(20'000);
-  study.asked().parts.erase(study.asked().parts.begin());  // x1 keeps 0.05: 0.15 rms
+  study.asked().parts.erase(study.asked().parts.begin());  // x1 keeps sigma = 0.05, which gives an rms of 0.15
   study.study.analysis.limits = {{0, 0.1}};
   EXPECT_NE(refusal_of(study).find("the errors of no part alone give a root mean square of 0.15"), std::string::npos)
       << refusal_of(study);
 }
 
-/// The standard deviation of the sum is that of which a share of the design's rejects is beyond 1 on one side.
+/// Expects that the response has the standard deviation at which the design's allowed share of rejects exceeds 1 on one
+/// side.
 void expect_deviation_by_one_end(const AllocationResult& found) {
   double variance = 0.0;
   for (std::size_t i = 0; i < 3; ++i) variance += std::pow(kCoefficients[i] * found.sigma(i), 2);
@@ -356,8 +364,8 @@ void expect_deviation_by_one_end(const AllocationResult& found) {
   EXPECT_EQ(found.certificate.decision, YieldVerdict::Decision::kept);
 }
 
-/// Of a limit with two ends the nearer one decides, here nearly alone: the standard deviation of the sum is that whose
-/// normal share is the yield. Where the perfect mechanism is off zero, the limit is counted from there.
+/// A limit from -1 to 3: practically all rejects are beyond the nearer end. If the response of the perfect mechanism is
+/// not zero, the distance to the limit counts from that response.
 TEST(ToleranceSearch, KeepsALimitWithTwoEnds) {
   FunctionStudy study = weighted_sum_study();
   study.study.analysis.limits = {{0, ValueLimit::between(-1.0, 3.0)}};
@@ -380,7 +388,7 @@ TEST(ToleranceSearch, KeepsALimitWithTwoEnds) {
   EXPECT_NE(refusal_of(moved).find("without the errors of the parts it is 2"), std::string::npos) << refusal_of(moved);
 }
 
-/// A limit with one end, met by half as many rejects on one side.
+/// A limit with an upper end only: all rejects are on this side.
 TEST(ToleranceSearch, KeepsALimitWithOneEnd) {
   FunctionStudy study = weighted_sum_study();
   study.study.analysis.limits = {{0, ValueLimit::between(-std::numeric_limits<double>::infinity(), 1.0)}};
@@ -394,7 +402,7 @@ TEST(ToleranceSearch, RefusesLowestTolerancesThatAreTooCoarse) {
   EXPECT_NE(refusal_of(study).find("with every tolerance at its lowest the root mean square is 1.067"),
             std::string::npos)
       << refusal_of(study);
-  for (AllocatedPart& part : study.asked().parts) part.lo = 0.5;  // 0.534 is no three sigma
+  for (AllocatedPart& part : study.asked().parts) part.lo = 0.5;  // the rms is then 0.534, too much for a yield of 99 %
   EXPECT_NE(refusal_of(study).find("99 % of the machines within the limits cannot be reached"), std::string::npos)
       << refusal_of(study);
 }
@@ -432,8 +440,8 @@ TEST(MeanSquaresOf, LinearFunctionsAreExact) {
   }
 }
 
-// y = 0.01 + x1 + 2 x2 - x3 has E y^2 = (0.01 + m1 + 2 m2 - m3)^2 + s1^2 + 4 s2^2 + s3^2: means add before they are
-// squared.
+// y = 0.01 + x1 + 2 x2 - x3 has E y^2 = (0.01 + m1 + 2 m2 - m3)^2 + s1^2 + 4 s2^2 + s3^2, with the means m and the
+// standard deviations s of the errors.
 TEST(MeanSquaresOf, ErrorsWithMeansAreExact) {
   FunctionStudy study(
       3, [](std::span<const double> x, double, std::span<double> y) { y[0] = 0.01 + x[0] + 2.0 * x[1] - x[2]; }, 1.0,
@@ -447,8 +455,9 @@ TEST(MeanSquaresOf, ErrorsWithMeansAreExact) {
   for (std::size_t p = 0; p < 3; ++p) EXPECT_NEAR(found.slope[p], p == 1 ? 4.0 : 1.0, 1e-9) << p;
 }
 
-// y = x1 + 10 x2 x3 has E y^2 = s^2 + 100 s^4. The part of x2 is known from 4000 draws of x3, whose mean square has a
-// relative standard error of sqrt(2 / 4000); alpha = 1e-5 for each of the three.
+// y = x1 + 10 x2 x3 has E y^2 = s^2 + 100 s^4, with the standard deviation s of each error. The effect of x2 is
+// estimated from 4000 draws of x3, whose mean square has a relative standard error of sqrt(2 / 4000). The test allows
+// 4.5 of them (alpha = 1e-5).
 TEST(MeanSquaresOf, ErrorsThatActTogetherCountForEach) {
   const auto function = [](std::span<const double> x, double, std::span<double> y) {
     y[0] = x[0] + 10.0 * x[1] * x[2];
@@ -476,7 +485,7 @@ TEST_P(Allowed, RejectsAreWhatClopperAndPearsonAllow) {
   EXPECT_GE(proportion_at_least(machines - allowed.certificate, machines, confidence), yield);
   EXPECT_LT(proportion_at_least(machines - allowed.certificate - 1, machines, confidence), yield);
   EXPECT_LE(allowed.design, allowed.certificate);
-  // Two numbers of rejects, each about Poisson: their difference is about normal.
+  // The rejects of the design and of the certificate are about Poisson, so their difference is about normal.
   const double d = static_cast<double>(allowed.design);
   EXPECT_LE(d + 2.3 * std::sqrt(2.0 * d), static_cast<double>(allowed.certificate) + 1.0);
 }

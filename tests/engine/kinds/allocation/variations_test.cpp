@@ -1,4 +1,4 @@
-// Loads of machines with one tolerance changed are those of a study with that tolerance.
+// The loads of machines with a changed tolerance equal those of a study with this tolerance.
 
 #include "engine/kinds/allocation/variations.h"
 
@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kErrors = 4;
 const std::vector<double> kPlaces{0.0, 0.2, 0.4, 0.6, 0.8, 1.0};
 
-/// Each error acts most at another place, and the last one hardly at all.
+/// The first three errors have their largest effect at different places; the fourth has almost none.
 void function(std::span<const double> x, double place, std::span<double> y) {
   y[0] = x[0] * (1.0 + place) + 2.0 * x[1] * (1.0 - place) + 3.0 * x[2] * place * (1.0 - place) + 1e-3 * x[3];
   y[1] = 5.0 * x[0] * x[1];
@@ -67,7 +67,7 @@ TEST(TryVariations, ChangesErrorsAsATolerance) {
       other.study.errors.by_factor[p] = Distribution::normal(0.3 * std::abs(factor));
     }
     const auto whole = machine_loads(other.plan(), other.model, other.study.analysis.limits, {.threads = 1});
-    // Without signs: the function has none where all errors are mirrored.
+    // The factor -1 for all errors leaves the loads as they are, because y changes only its sign and z is unchanged.
     for (std::size_t k = 0; k < 225; ++k) EXPECT_NEAR(found[v * 225 + k], whole->load[2 * k], 1e-9) << v;
   }
 }
@@ -88,7 +88,8 @@ TEST(TryVariations, KeepErrorsThatAreDrawnAnewAtEachPose) {
   }
 }
 
-// The load of machine s by a loop over its poses, with draws from the addresses that theory.md names.
+// Recomputes the load of each machine s in a loop over the poses, with the random numbers at the addresses (seed,
+// purpose, error, pose, sample) that theory.md defines.
 TEST(MachineLoads, AreThoseOfErrorsDrawnAnewAtEachPose) {
   VariedStudy study;
   study.study.errors.per_pose = {FactorIndex(0), FactorIndex(2)};

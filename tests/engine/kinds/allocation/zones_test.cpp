@@ -1,4 +1,4 @@
-// Zones of a drawing as parts, by the program's own functions, against another program's numbers.
+// Zones of a drawing as parts of an allocation. The numbers are compared with those of another program.
 
 #include <gtest/gtest.h>
 
@@ -58,7 +58,7 @@ Study read(const std::string& parts, const std::string& scatter = "sigmas = 3") 
 
 std::vector<AllocatedPart> parts_of(const Study& study) { return asked_of<AllocationOptions>(study.analysis).parts; }
 
-/// A search at the oracle's three poses.
+/// A search at the three poses of the other program.
 struct ZoneSearch {
   explicit ZoneSearch(Study asked) : study(std::move(asked)) {}
 
@@ -73,7 +73,7 @@ struct ZoneSearch {
     const auto& parts = problem.programme.parts();
     return static_cast<std::size_t>(std::ranges::find(parts, name, &AllocatedPart::name) - parts.begin());
   }
-  /// The tolerances at least cost for root mean squares as large as the limits.
+  /// The tolerances of least cost for which the root mean squares do not exceed the limits.
   Candidate cheapest() const {
     std::vector<double> small = problem.programme.usual();
     for (double& tolerance : small) tolerance *= 0.01;
@@ -81,7 +81,7 @@ struct ZoneSearch {
   }
 };
 
-/// Costs b / T, b = 0.5 for distances; for hinge_b.parallelism as stated.
+/// Parts with costs b / T: b is 0.5 for distances, hinge_b for hinge_b.parallelism and 1 for other zones.
 std::string oracle_parts(const std::string& hinge_b) {
   const auto block = [](const std::string& zones, const std::string& b) {
     return "[[analysis.parts]]\nzones = " + zones + "\n" + kAlike + "cost = { law = \"reciprocal\", b = " + b +
@@ -129,7 +129,7 @@ double sigma(const Study& study, const std::string& error) {
 }
 
 TEST(ZoneParts, GiveTheStandardDeviationsOfTheirZones) {
-  // As drawn, all zones give the errors that errors.zones gives.
+  // With the tolerances of the drawing, the parts give the same errors as errors.zones.
   const Study study = read(kAll);
   const ZoneSearch search(study);
   const Study drawn = search.problem.programme.at(search.problem.programme.usual());
@@ -137,7 +137,8 @@ TEST(ZoneParts, GiveTheStandardDeviationsOfTheirZones) {
     const double expected = study.errors.by_factor[f].standard_deviation();
     EXPECT_NEAR(drawn.errors.by_factor[f].standard_deviation(), expected, 1e-15 * expected) << f;
   }
-  // A share of points takes another number of standard deviations for a disc than for an interval.
+  // `within` states the share of points inside a zone. The number of standard deviations for it is larger for a disc
+  // than for an interval.
   const ZoneSearch share(read(kAll, "within = 0.9973002039"));
   const Study shared = share.problem.programme.at(share.problem.programme.usual());
   EXPECT_NEAR(sigma(shared, "rail_x_1"), 3.0 / 3.4393543118 * 7.6376261583e-6, 1e-13);
@@ -172,7 +173,8 @@ TEST(ZoneParts, KeepAnOrientationThatIsNoPartAsDrawn) {
   EXPECT_EQ(parts[1].lo, 0.02e-3);
   const ZoneSearch search(study);
   const ToleranceProgramme& programme = search.problem.programme;
-  // Location 0.1 mm: the tilt as drawn; 0.01 mm: a tilt of 0.02 mm is void.
+  // With a location zone of 0.1 mm the tilt is as drawn. With 0.01 mm the drawn tilt zone of 0.02 mm has no effect (is
+  // void).
   const auto tilt_at = [&](double location) {
     return sigma(programme.at(programme.at_most(std::vector{location, 1.0}).tolerance), "rail_lean_x_2");
   };
@@ -192,7 +194,7 @@ TEST(ZoneParts, AreRoundedDownWithoutALargerError) {
        {std::array{50.0, 20.0, 48.0, 18.0},
         {48.01, 20.9, 45.0, 18.0},
         {48.0, 18.0, 48.0, 18.0},
-        {14.0, 9.8, 12.0, 12.0 / std::sqrt(2.0)}}) {  // at last the orientation is as wide as the location allows
+        {14.0, 9.8, 12.0, 12.0 / std::sqrt(2.0)}}) {  // last: the tilt zone is as wide as the location allows
     point.tolerance[location] = 1e-6 * wide;
     point.tolerance[tilt] = 1e-6 * fine;
     const TolerancePoint rounded = programme.rounded(point);
@@ -222,7 +224,7 @@ TEST(ZoneParts, GrowByTheirOwnErrorsAndTheMiddle) {
   ASSERT_EQ(of_tilt.size(), 12u);
   for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(of_tilt[k].factor, 1.0);
   for (std::size_t k = 6; k < 12; ++k) EXPECT_NEAR(of_tilt[k].factor, -tilt * tilt / rest, 1e-12);
-  // The same by standard deviations at a tilt 1 % coarser.
+  // variation() agrees with the change of the standard deviations when the tilt zone becomes 1 % coarser.
   TolerancePoint coarser = *programme.coarser(point, search.position("rail.perpendicularity"), 1.01);
   const Study before = programme.at(point.tolerance);
   const Study after = programme.at(coarser.tolerance);
@@ -248,7 +250,7 @@ TEST(ZoneParts, LeaveAnOrientationOutWhereItCannotBeCoarser) {
   EXPECT_EQ(programme.cost(out, inner), 0.0);
   EXPECT_NEAR(out.cost, near.cost - programme.cost(near, inner), 1e-9);
   EXPECT_FALSE(programme.coarser(out, inner, 1.05));
-  // It stays so when the location is scaled, or moves to another value.
+  // The orientation stays void when all tolerances are scaled, and when the location becomes coarser.
   std::vector<double> finer = out.tolerance;
   for (double& tolerance : finer) tolerance *= 0.9;
   EXPECT_TRUE(programme.is_void(programme.at_most(finer), inner));
@@ -259,7 +261,7 @@ TEST(ZoneParts, LeaveAnOrientationOutWhereItCannotBeCoarser) {
   EXPECT_EQ(only_tilt[inner], out.tolerance[inner]);
 }
 
-// The chance of 99 % that the design's margin leaves to each certificate gives 18 or more of 20 a chance of 99.9 %.
+// Each certificate holds with a probability of 99 %, so 18 or more of 20 hold with a probability of 99.9 %.
 TEST(ZoneParts, HoldTheirCertificateOnOtherMachines) {
   const ZoneSearch search(read(kAll));
   const auto found = find_tolerances(search.problem);
@@ -279,13 +281,13 @@ TEST(ZoneParts, MayAllGrowByOneFactor) {
   const std::vector<double> usual = search.problem.programme.usual();
   const std::vector<double> found = search.cheapest().point.tolerance;
   for (std::size_t i = 1; i < found.size(); ++i) EXPECT_NEAR(found[i] / usual[i], found[0] / usual[0], 1e-12);
-  const double rms = 0.02e-3 / (found[0] / usual[0]);  // as drawn, at the worst of the three poses
+  const double rms = 0.02e-3 / (found[0] / usual[0]);  // with the drawn tolerances, at the worst of the three poses
   double worst = 0.0;
   for (const json& pose : oracle()["linear_delta"]["poses"]) worst = std::max(worst, pose["rms_tip"].get<double>());
   EXPECT_NEAR(rms, worst, 1e-8 * worst);
 }
 
-/// The drawing with this nominal size of its rods.
+/// The mechanism of the drawing, with a nominal size of 340 mm for its rods.
 const Catalog& catalog_with_size() {
   static const Catalog only = [] {
     std::ostringstream text;
@@ -319,7 +321,7 @@ TEST(ZoneGrades, AreThoseOfTheSizeOnTheDrawing) {
 
 struct WrongZones {
   const char* name;
-  std::string parts;  ///< '^' before what is wrong
+  std::string parts;  ///< text of the parts; a '^' marks the place of the mistake
   std::vector<std::string> words;
   std::string errors = "errors.zones = { distribution = \"normal\", sigmas = 3 }\n";
 };

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kSize = 1e-3;
 
-/// Solves no sample that lies beyond a plane: sum of weight x error above `most`. Such machines cannot be assembled.
+/// A model that cannot assemble a sample whose sum of weight x error exceeds `most`.
 class PartlySolved final : public FunctionModel {
  public:
   PartlySolved(std::size_t errors, ErrorFunction function, std::vector<double> weight, double most)
@@ -51,7 +51,7 @@ class PartlySolved final : public FunctionModel {
   double most_;
 };
 
-/// Two sources, of the first and the second half of the errors, each error a block of its own.
+/// Two sources of errors: the first half and the second half of the errors. Each error is a block of its own.
 CouplingStudy halves(const Model& model, std::vector<double> sizes = {kSize}) {
   CouplingStudy study{std::move(sizes), {}, {}, {}};
   study.pattern.limbs = ErrorPattern::Choice::independent;
@@ -62,7 +62,7 @@ CouplingStudy halves(const Model& model, std::vector<double> sizes = {kSize}) {
   return study;
 }
 
-/// All corners of all errors, each solved by the function itself; the largest magnitude.
+/// The largest |y[0]| over all corners (every error +size or -size), by the function itself.
 double largest_of_all_corners(const FunctionModel& model, double pose, double size) {
   const std::size_t errors = model.description().factors.size();
   std::vector<double> x(errors), y(model.description().responses.size());
@@ -91,7 +91,8 @@ struct Search {
   CornerSearch search;
 };
 
-/// y = sum a x + sum b x x of neighbours. With |a| >= 3 |b| size the signs of the first order are those of the worst.
+/// y = sum of (a_p + pose) x_p + b_p x_p x_(p+1). If |a_p + pose| >= 3 |b| size, the first-order signs give the worst
+/// corner.
 ErrorFunction bilinear(std::vector<double> a, std::vector<double> b) {
   return [a = std::move(a), b = std::move(b)](std::span<const double> x, double pose, std::span<double> y) {
     y[0] = 0.0;
@@ -113,7 +114,8 @@ TEST(CornerTable, HasTheBlocksOfEachSubsetAndTheirErrors) {
   EXPECT_EQ(sources.signs_of_errors(2, "-+"), (std::vector{-1.0, -1.0, 1.0, 1.0}));
 }
 
-/// Of a linear response it is the first-order sum, sum of |a|, at the corner of the signs of a, or at the opposite one.
+/// For a linear response the worst case is the first-order sum, sum of |a_p + pose| size. It is at the corner with the
+/// signs of a or at the opposite corner.
 TEST(CornerSearch, OfALinearResponseIsTheFirstOrderSum) {
   const std::vector<double> a{3.0, -1.0, 4.0, -2.0, 0.5, -7.0};
   const FunctionModel model(6, {"y"}, bilinear(a, std::vector(6, 0.0)));
@@ -132,7 +134,7 @@ TEST(CornerSearch, OfALinearResponseIsTheFirstOrderSum) {
   }
 }
 
-/// The second order decides which side is worse: y = x + 50 x^2 of one error is 1.05e-3 at +size, 0.95e-3 at -size.
+/// The second order decides which sign is worse: |x + 50 x^2| is 1.05e-3 for +size (1e-3) and 0.95e-3 for -size.
 TEST(CornerSearch, TriesBothSigns) {
   for (const double side : {50.0, -50.0}) {
     const FunctionModel model(2, {"y"}, [side](auto x, double, auto y) { y[0] = x[0] + x[1] + side * x[0] * x[0]; });
@@ -140,7 +142,8 @@ TEST(CornerSearch, TriesBothSigns) {
   }
 }
 
-/// Every corner solved is the oracle: 100 functions of eight errors whose second order is up to a third of the first.
+/// Compares the search with the solution of all corners for 100 random functions of eight errors. Their second order is
+/// up to a third of the first order.
 TEST(CornerSearch, FindsTheWorstOfAllCorners) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -153,7 +156,8 @@ TEST(CornerSearch, FindsTheWorstOfAllCorners) {
   }
 }
 
-/// Where the second order rules, the first-order corner is not the worst; no flip of what is found is worse.
+/// With a dominant second order, the first-order corner is usually not the worst. The search must end at a corner where
+/// no flip of a single sign is worse.
 TEST(CornerSearch, EndsWhereNoFlipIsWorse) {
   std::mt19937_64 random(6);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -185,7 +189,8 @@ TEST(CornerSearch, EndsWhereNoFlipIsWorse) {
   EXPECT_GT(improved, 50);
 }
 
-/// A norm has no signs to add up: the corner of a component is tried for it as well.
+/// A norm has no first-order signs at zero errors, so the search also tries the worst corners of other responses for
+/// it.
 TEST(CornerSearch, OfANormBeginsAtTheCornersOfOthers) {
   const std::vector<double> a{1.0, -1.0, 1.0, -1.0};
   const FunctionModel model(4, {"norm", "component"}, [&a](std::span<const double> x, double, std::span<double> y) {
@@ -197,7 +202,7 @@ TEST(CornerSearch, OfANormBeginsAtTheCornersOfOthers) {
   EXPECT_NEAR(found.value[0], 4.0 * kSize, 1e-18);
 }
 
-/// What moves nothing but rounding is not searched.
+/// The search ignores responses that are only rounding errors.
 TEST(CornerSearch, DoesNotFollowRounding) {
   const FunctionModel model(6, {"y"}, [](std::span<const double> x, double, std::span<double> y) {
     y[0] = 1e-19 * std::sin(1e7 * (x[0] - 2.0 * x[3]));
@@ -207,8 +212,8 @@ TEST(CornerSearch, DoesNotFollowRounding) {
   EXPECT_LE(found.value[0], 1e-19);
 }
 
-/// y = sum x, and what is above 2.5 sizes in all cannot be assembled: of four errors the corner of the first-order sum,
-/// 4 sizes. Three positive ones are 2 sizes, as are three negative ones; four negative ones, 4 sizes, can be.
+/// y is the sum of four errors. Machines with y above 2.5 sizes cannot be assembled, so the corner ++++ (4 sizes) has
+/// no solution. All other corners have one, and the worst of them is ---- (-4 sizes).
 TEST(CornerSearch, NamesCornersThatHaveNoSolution) {
   const PartlySolved model(4, bilinear(std::vector(4, 0.75), std::vector(4, 0.0)), std::vector(4, 1.0), 2.5 * kSize);
   const WorstCorners found = Search(model, halves(model)).all();
@@ -223,7 +228,7 @@ TEST(CornerSearch, NamesCornersThatHaveNoSolution) {
   EXPECT_EQ(none.signs[0], "");
 }
 
-/// A study has the worst over its poses, with signs and place, beside the sum.
+/// The result of a study has the worst case over all poses with its signs and pose, and the first-order sum.
 TEST(WorstCases, AreOfAllPosesInAStudy) {
   const PartlySolved model(4, bilinear({1.0, -1.0, 2.0, -2.0}, std::vector(4, 0.0)), std::vector(4, 1.0), 3.5 * kSize);
   CatalogEntry entry;

@@ -17,10 +17,10 @@ using Choice = ErrorPattern::Choice;
 
 constexpr double kSize = 1e-3;
 
-/// The effect of errors [F] at pose m.
+/// A response as a function of all errors of the model (m) at pose m.
 using Effect = std::function<double(std::span<const double> errors, std::size_t m)>;
 
-/// What run_evaluation gives for a table where every response is one of these.
+/// The evaluation of a table of errors by a model whose responses are these functions.
 EvaluationResult evaluation_of(const ErrorTable& table, std::size_t factors, std::size_t poses,
                                const std::vector<Effect>& responses) {
   EvaluationResult result;
@@ -41,7 +41,7 @@ EvaluationResult evaluation_of(const ErrorTable& table, std::size_t factors, std
   return result;
 }
 
-/// Of responses that solves do not round.
+/// The rounding thresholds for responses that are computed without rounding errors.
 Array<double, axis::Response, axis::Size> rounding_of(const CouplingStudy& study, std::size_t responses) {
   Array<double, axis::Response, axis::Size> rounding({responses, study.sizes()});
   for (std::size_t r = 0; r < responses; ++r) {
@@ -50,7 +50,8 @@ Array<double, axis::Response, axis::Size> rounding_of(const CouplingStudy& study
   return rounding;
 }
 
-/// Two limbs with three lengths each, x, y and a scalar; the sources are limb by limb a (x and y) and q.
+/// Two limbs with three lengths each: a_x, a_y and the scalar q. Source A has the errors a of both limbs, source Q the
+/// errors q.
 class CouplingOfSixErrors : public testing::Test {
  protected:
   static constexpr std::size_t kPoses = 3;
@@ -66,8 +67,8 @@ class CouplingOfSixErrors : public testing::Test {
                       {"Q", {FactorIndex(2), FactorIndex(5)}}};
   }
 
-  /// Signed and bilinear: a weighted sum, and a product of one error of each source. A gives 4 e at every pose, Q gives
-  /// -5 e, -2 e and +1 e.
+  /// A signed response: a weighted sum of the errors, and a product of one error of each source. If all errors have the
+  /// size e, source A alone gives 4 e at every pose, and source Q alone gives -5 e, -2 e and e at the three poses.
   static double bilinear(std::span<const double> e, std::size_t m) {
     const double q = 3.0 * static_cast<double>(m) - 5.0;
     return 3.0 * e[0] - 1.0 * e[1] + 4.0 * e[3] - 2.0 * e[4] + q * e[2] + 7.0 * e[0] * e[5];
@@ -113,10 +114,10 @@ TEST_F(CouplingOfSixErrors, SumsUpOverThePoses) {
   EXPECT_NEAR(found.interaction_max(0, 0, 2), 7.0 * e * e, 1e-17);
   EXPECT_NEAR(found.first_order_sum_max(0, 0, 2), 9.0 * e, 1e-17);
   EXPECT_NEAR(found.root_sum_square_max(0, 0, 2), std::hypot(4.0, 5.0) * e, 1e-17);
-  EXPECT_DOUBLE_EQ(found.opposed_share(0, 0, 2), 2.0 / 3.0);  // |4 - 5| < 5 and |4 - 2| < 4
+  EXPECT_DOUBLE_EQ(found.opposed_share(0, 0, 2), 2.0 / 3.0);  // at two of three poses: |4 - 5| < 5 and |4 - 2| < 4
   EXPECT_NEAR(found.cancellation_max(0, 0, 2), 8.0 / 9.0, 1e-14);
   EXPECT_EQ(found.cancellation_max_pose(0, 0, 2), 0);
-  EXPECT_EQ(found.effect_max_pose(0, 0, 0), 0);  // the first of equal ones
+  EXPECT_EQ(found.effect_max_pose(0, 0, 0), 0);  // all poses are equal, so the first
   EXPECT_EQ(found.opposed_share(0, 0, 0), 0.0);
 }
 
@@ -124,7 +125,7 @@ TEST_F(CouplingOfSixErrors, TakesBlocksOnTheirOwnInTheFirstOrderSum) {
   const auto worst_of_a = [&](Choice limbs, Choice components) {
     study_.pattern = {limbs, 0, components, {}};
     const CouplingResult found = solve({bilinear});
-    EXPECT_NEAR(found.effect(0, 0, 0, 1), 4.0 * kSize, 1e-17);  // whatever moves with what
+    EXPECT_NEAR(found.effect(0, 0, 0, 1), 4.0 * kSize, 1e-17);  // for every pattern
     return std::pair(found.first_order_sum(0, 0, 0, 1) / kSize, found.root_sum_square(0, 0, 0, 1) / kSize);
   };
   const auto near = [](std::pair<double, double> found, double worst, double squares) {
@@ -132,9 +133,9 @@ TEST_F(CouplingOfSixErrors, TakesBlocksOnTheirOwnInTheFirstOrderSum) {
     EXPECT_NEAR(found.second, std::sqrt(squares), 1e-13);
   };
   near(worst_of_a(Choice::all, Choice::all), 4.0, 16.0);
-  near(worst_of_a(Choice::independent, Choice::all), 4.0, 8.0);            // 2 and 2
-  near(worst_of_a(Choice::all, Choice::independent), 10.0, 58.0);          // 7 and -3
-  near(worst_of_a(Choice::independent, Choice::independent), 10.0, 30.0);  // 3, -1, 4, -2
+  near(worst_of_a(Choice::independent, Choice::all), 4.0, 8.0);            // limbs: 2 and 2
+  near(worst_of_a(Choice::all, Choice::independent), 10.0, 58.0);          // components: 7 and -3
+  near(worst_of_a(Choice::independent, Choice::independent), 10.0, 30.0);  // errors: 3, -1, 4, -2
 }
 
 TEST_F(CouplingOfSixErrors, KnowsNoOppositionWhereAResponseIsANorm) {
@@ -158,11 +159,11 @@ TEST_F(CouplingOfSixErrors, LeavesOutWhatDoesNotCount) {
   study_.pattern.limbs = Choice::independent;
   const ErrorTable table = coupling_table(study_, model_);
   const std::size_t rows = table.rows / 2;
-  ASSERT_EQ(rows, 7u);  // A, Q, A+Q, and two blocks of both
+  ASSERT_EQ(rows, 7u);  // A, Q, A+Q, and the two limbs of A and of Q
   EvaluationResult some = evaluation_of(table, 6, kPoses, {bilinear});
-  some.status(0, 0) = SolveStatus::singular;       // pose 0: A
-  some.status(1, 6) = SolveStatus::iteration_cap;  // pose 1: a block of Q
-  some.status(2, rows) = SolveStatus::non_finite;  // pose 2, second size: A
+  some.status(0, 0) = SolveStatus::singular;       // pose 0: source A
+  some.status(1, 6) = SolveStatus::iteration_cap;  // pose 1: one limb of Q
+  some.status(2, rows) = SolveStatus::non_finite;  // pose 2, second size: source A
   const auto found_with = [&](NotConverged policy) {
     return coupling_result(some, study_, model_, policy, rounding_of(study_, 1));
   };

@@ -24,7 +24,7 @@ class CouplingFile : public testing::Test {
   CouplingResult found_;
 };
 
-/// Equal bit by bit, but for NaN, which equals NaN.
+/// Expects equal numbers. NaN equals NaN.
 template <class Numbers>
 void expect_same(const Numbers& found, const Numbers& expected) {
   ASSERT_EQ(found.lengths(), expected.lengths());
@@ -107,7 +107,7 @@ TEST_F(CouplingFile, IsExportedByPoseAndInSum) {
             "solves_stagnated,solves_iteration_cap,solves_singular,solves_non_finite\n0,1e-04,NaN,1,2,5,3,0,0,1,0\n");
 }
 
-/// A file of version 0.2.0: what it calls worst case is the first-order sum, and corners are not in it.
+/// A file of version 0.2.0 stores the first-order sum under the name of the worst case and has no corners.
 TEST_F(CouplingFile, OfVersion020HasTheFirstOrderSumAsWorstCase) {
   CouplingResult older = example_.coupling();
   const CouplingResult::Curves sum = older.worst_case;

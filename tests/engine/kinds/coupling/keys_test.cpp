@@ -84,7 +84,7 @@ TEST(StudyOfCoupling, KeepsWhatThePatternLeaves) {
   const Study study =
       study_of_text(with_analysis(kSizes + "components = [\"x\"]\n"), "study.toml", kCatalog, StudyUse::run);
   EXPECT_EQ(asked_of<CouplingStudy>(study.analysis).pattern.axes, std::vector<std::string>{"x"});
-  EXPECT_EQ(asked_of<CouplingStudy>(study.analysis).sources[0].factors.size(), 2u);  // as named
+  EXPECT_EQ(asked_of<CouplingStudy>(study.analysis).sources[0].factors.size(), 2u);  // delta_2 was named explicitly
   EXPECT_EQ(study.analysis.factors, (std::vector<FactorIndex>{FactorIndex(0), FactorIndex(2)}));
 }
 
@@ -142,7 +142,7 @@ TEST(StudyOfCoupling, BoundsWhatAResultHolds) {
 
 struct BadCoupling {
   const char* name;
-  std::string analysis;  ///< the place of the mistake marked with ^
+  std::string analysis;  ///< text of [analysis]; a ^ marks the place of the mistake
   std::vector<std::string> words;
 };
 

@@ -101,7 +101,7 @@ TEST(CouplingRows, HaveNoSetTwice) {
 TEST(CouplingRows, AreSubsetsThenBlocks) {
   CouplingStudy some = study();
   EXPECT_EQ(coupling_rows(some, model()).errors.size(), 3u);
-  some.pattern.components = Choice::independent;  // three blocks of A; T has the component y alone
+  some.pattern.components = Choice::independent;  // A has three blocks (its components); T has only the component y
   const CouplingRows rows = coupling_rows(some, model());
   EXPECT_EQ(rows.errors.size(), 6u);
   EXPECT_EQ(rows.errors[2], indices({0, 1, 2, 3, 4, 5, 6, 7}));

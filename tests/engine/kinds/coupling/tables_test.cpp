@@ -26,7 +26,7 @@ StoredResult example() {
   found.sources = {"FS", "T"};
   found.subsets = {"FS", "T", "FS+T"};
   found.effect = CouplingResult::Curves({2, 1, 3, 4});
-  found.worst_case = found.effect;  // what tables show is the largest
+  found.worst_case = found.effect;  // the tables show only the maxima over the poses
   found.count = CouplingResult::Summary<std::uint64_t>({2, 1, 3}, 4);
   found.effect_max = {{2, 1, 3}, {0.0, 0.0, 0.0, 4e-5, 1e-5, 3.5e-5}};
   found.effect_max_pose = {{2, 1, 3}, {0, 0, 0, 3, 0, 3}};

@@ -28,7 +28,7 @@ ModelDescription model() {
 
 using Deformation = std::function<double(std::span<const double> errors, std::size_t pose)>;
 
-/// Deformations from a formula; a NaN stands for a pose that is not solved.
+/// A solver whose deformations come from a formula. NaN means that the sample is not solved.
 SolveTable solver(Deformation deformation) {
   return [deformation](const ErrorTable& errors) {
     EvaluationResult result;
@@ -65,7 +65,7 @@ TEST(Identify, FindsErrorsThatDeformAloneAndCouplingsOfAFrame) {
   const IdentificationResult found =
       identified([](auto e, std::size_t) { return std::abs(e[4]) + std::abs(e[0] * e[1]) + std::abs(e[2] * e[3]); });
   EXPECT_EQ(test::elements(found.single), (Verdicts{0, 0, 0, 0, 1, 0}));
-  // Of the length and the angle the angle is named; of two angles both.
+  // For a coupled length and angle only the angle is reported, for two coupled angles both.
   EXPECT_EQ(test::elements(found.coupled), (Verdicts{0, 1, 1, 1, 1, 0}));
   ASSERT_EQ(found.couplings.size(), 4u);
   EXPECT_EQ(found.couplings[0].first, 0u);
@@ -84,7 +84,8 @@ TEST(Identify, DoesNotCoupleErrorsOfDifferentFrames) {
 }
 
 TEST(Identify, FindsOverlappingPairs) {
-  // Leaving out c takes all away, leaving out d nothing like nine tenths; both pairs deform.
+  // Both pairs (c, d) and (c, f) deform. Without c no deformation is left; without d it is reduced by much less than 90
+  // %.
   ModelDescription three = model();
   three.factors[5].limb = 1;
   three.factors[5].frame = 1;
@@ -101,7 +102,7 @@ TEST(Identify, CallsRoundingZeroAndAnythingAboveDeformed) {
 }
 
 TEST(Identify, AsksForAShareOfThePoses) {
-  // 19 of 20 poses decide: one deformed pose is not enough, two are.
+  // An error is negligible if 19 of 20 poses are not deformed. One deformed pose is allowed, two are not.
   const auto deformed_at = [](std::size_t poses) {
     return [poses](auto e, std::size_t pose) { return pose < poses ? std::abs(e[0]) : 0.0; };
   };

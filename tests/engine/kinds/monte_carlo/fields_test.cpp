@@ -22,7 +22,7 @@ class MonteCarloFile : public testing::Test {
   std::string path_;
 };
 
-/// Equal bit by bit, but for NaN, which equals NaN.
+/// Expects equal numbers. NaN equals NaN.
 template <NamedAxis... Axes>
 void expect_same(const Array<double, Axes...>& found, const Array<double, Axes...>& expected) {
   ASSERT_EQ(found.lengths(), expected.lengths());
@@ -33,7 +33,7 @@ void expect_same(const Array<double, Axes...>& found, const Array<double, Axes..
   }
 }
 
-/// Such arrays among the members of two things.
+/// Compares the given members (arrays) of two objects.
 template <class Found, class... Members>
 void expect_same_members(const Found& found, const Found& expected, Members... members) {
   (expect_same(found.*members, expected.*members), ...);

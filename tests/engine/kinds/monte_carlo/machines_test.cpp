@@ -21,7 +21,7 @@
 namespace poesy {
 namespace {
 
-/// y = a . e with a = (1, 2, 0.5), and its magnitude at half the size; at each pose the same.
+/// The first response is y = a . e with a = (1, 2, 0.5), the second is |y| / 2. Both are the same at each pose.
 class LinearModel : public test::FakeModel {
  public:
   static constexpr std::array<double, 3> kSlopes{1.0, 2.0, 0.5};
@@ -48,7 +48,7 @@ class LinearModel : public test::FakeModel {
   };
 };
 
-/// The fake mechanism, of which no machine is solved whose first error is above a limit, at poses with beta above zero.
+/// The fake mechanism, but at poses with beta above zero machines whose first error exceeds kMost are not solved.
 class FailingModel : public test::FakeModel {
  public:
   static constexpr double kMost = 1.5e-3;
@@ -92,7 +92,7 @@ MonteCarloResult run(const Study& study, const Model& model, std::size_t threads
   return run_monte_carlo(Plan(study, select_poses(study.poses, model).poses), model, study.analysis, options).value();
 }
 
-/// The curves of the first response are straight lines.
+/// Expects that the main effects of the first response are straight lines with the slopes of LinearModel.
 void expect_lines(const EffectResult& found) {
   const MainEffects& effects = found.effects;
   for (std::size_t p = 0; p < 3; ++p) {
@@ -103,7 +103,7 @@ void expect_lines(const EffectResult& found) {
   }
 }
 
-/// The closed form and the checks of the likelihood ratio's gradient: |y| <= 0.3, sigma 0.1, 0.05, 0.2.
+/// Compares yield, gradient and first-order indices with their closed forms. The limit is |y| <= 0.3.
 TEST(Machines, FindTheYieldOfALinearModel) {
   constexpr std::size_t kMachines = 40'500;
   const Catalog catalog = test::fake_catalog();
@@ -125,7 +125,7 @@ TEST(Machines, FindTheYieldOfALinearModel) {
     const double half = 0.5 * (yield.gradient_ci_high(p) - yield.gradient_ci_low(p));
     EXPECT_NEAR(yield.gradient(p), kGradient[p], half * kErrors / 1.96);
     EXPECT_LT(half, 0.1 * std::abs(kGradient[p]));
-    // Each error makes a third of the variance.
+    // Each error causes a third of the variance.
     EXPECT_NEAR(found.effects.effects.s1(0, p), 1.0 / 3.0, 0.02);
     EXPECT_LT(found.effects.effects.s1_ci_low(0, p), 1.0 / 3.0);
     EXPECT_GT(found.effects.effects.s1_ci_high(0, p), 1.0 / 3.0);
@@ -133,8 +133,9 @@ TEST(Machines, FindTheYieldOfALinearModel) {
   expect_lines(found.effects);
 }
 
-/// y = a . e of errors of which each half is off: 1 - Y is what a normal sum leaves beyond the limit on either side,
-/// averaged over the eight signs. A shifted error has no score.
+/// The mean of each error is +shift or -shift, with equal probability. The expected yield is the mean over the signs of
+/// the probability that a normal sum is within the limit. The likelihood-ratio gradient does not exist for shifted
+/// errors.
 TEST(Machines, FindTheYieldOfShiftedErrors) {
   constexpr std::size_t kMachines = 40'500;
   constexpr std::array kSigma{0.1, 0.05, 0.2};
@@ -158,8 +159,7 @@ TEST(Machines, FindTheYieldOfShiftedErrors) {
   EXPECT_TRUE(std::isnan(yield.gradient(0)) && std::isnan(yield.gradient_ci_low(0)));
   EXPECT_TRUE(std::isnan(yield.gradient(1)) && std::isnan(yield.gradient_ci_high(1)));
   EXPECT_LT(yield.gradient(2), 0.0);
-  // The shares of the variance are those of sigma^2 + shift^2. Of the first error, two bins beside the middle are
-  // equally large, though one is of either half.
+  // An error has the variance sigma^2 + shift^2, which determines its first-order index.
   double all = 0.0;
   for (std::size_t p = 0; p < 3; ++p) {
     all += std::pow(LinearModel::kSlopes[p] * study.errors.by_factor[p].standard_deviation(), 2);
@@ -170,7 +170,7 @@ TEST(Machines, FindTheYieldOfShiftedErrors) {
   }
 }
 
-/// Of the yield, by the sigma of each of three errors.
+/// The estimates of the yield's derivatives by the standard deviation of each of the three errors.
 std::vector<Estimate> gradient_of(const Study& study) {
   const MonteCarloResult found = run(study, LinearModel());
   const YieldResult& yield = *found.machines->yield;
@@ -185,7 +185,7 @@ TEST(Machines, HaveAGradientByErrorsOfEveryShape) {
   const Catalog catalog = test::fake_catalog();
   Study study = study_of(catalog, 3, 40'500, {0.1, 0.05, 0.2});
   study.analysis.limits = {{0, 0.3}};
-  // Closed form of the sum of three uniforms, each of the standard deviation 0.1 after its slope.
+  // The sum of three uniform terms has a closed form. slope x standard deviation is 0.1 for each error.
   for (std::size_t p = 0; p < 3; ++p) {
     study.errors.by_factor[p] = Distribution::uniform(std::sqrt(3.0) * 0.1 / LinearModel::kSlopes[p]);
   }
@@ -210,7 +210,7 @@ double normal_share(double from, double to, double deviation) {
   return below(to) - below(from);
 }
 
-/// -0.1 <= y <= 0.35 of a normal sum, whose closed form is known.
+/// The limit -0.1 <= y <= 0.35 on a normal sum, for which the yield has a closed form.
 TEST(Machines, FindTheYieldBetweenTwoEnds) {
   constexpr std::size_t kMachines = 40'500;
   constexpr double kFrom = -0.1;
@@ -230,19 +230,20 @@ TEST(Machines, FindTheYieldBetweenTwoEnds) {
   };
   const double slope = (kFrom * density(kFrom) - kTo * density(kTo)) / (deviation * deviation);
   for (std::size_t p = 0; p < 3; ++p) {
-    const double gradient = slope * LinearModel::kSlopes[p] * 0.1 / deviation;  // a_p t_p is 0.1 of each error
+    const double gradient = slope * LinearModel::kSlopes[p] * 0.1 / deviation;  // slope x sigma is 0.1 for each error
     const double half = 0.5 * (yield.gradient_ci_high(p) - yield.gradient_ci_low(p));
     EXPECT_NEAR(yield.gradient(p), gradient, half * kErrors / 1.96) << p;
     EXPECT_LT(half, 0.1 * std::abs(gradient)) << p;
   }
-  // The value of the machine that is the last of 70 %: as far beyond either end as 70 % are within.
+  // The verdict's value is `out` beyond the nearer end of the limit: 70 % of the machines are within the limit if both
+  // ends are moved outwards by `out`.
   const LimitVerdict& verdict = found.verdicts->limits.at(0);
   const double out = verdict.value < 0.0 ? kFrom - verdict.value : verdict.value - kTo;
   EXPECT_NEAR(normal_share(kFrom - out, kTo + out, deviation), 0.7, kErrors * std::sqrt(0.21 / kMachines));
   EXPECT_EQ(verdict.within, kMachines - yield.rejects);
 }
 
-/// One uniform error between two ends, or below one: the map of the first machines gives slope and step.
+/// The gradient and the change of the yield for one uniform error, if the limit has two ends and if it has one.
 TEST(Machines, TellTheGradientBetweenTwoEnds) {
   const Catalog catalog = test::fake_catalog();
   Study study = study_of(catalog, 2, 20'000, {1e-4, 1e-4, 1e-4});
@@ -253,14 +254,16 @@ TEST(Machines, TellTheGradientBetweenTwoEnds) {
        {std::pair(ValueLimit::between(-0.02, 0.08), 0.5), std::pair(ValueLimit::between(-kInfinity, 0.08), 0.9)}) {
     study.analysis.limits = {{0, limit}};
     const YieldResult yield = *run(study, LinearModel()).machines->yield;
-    // The part of the yield that is lost as the width of the distribution grows: that of the ends inside it.
+    // The part of the yield that is proportional to 1 / width of the distribution; the rest does not depend on the
+    // width.
     const double inside = expected == 0.5 ? 0.5 : 0.4;
     EXPECT_NEAR(yield.gradient(0), -inside * std::sqrt(3.0) / 0.1, 0.02 * inside * std::sqrt(3.0) / 0.1);
     EXPECT_NEAR(yield.change(0), -inside * (1.0 - 1.0 / 1.1), 1e-3);
   }
 }
 
-/// Of a spread it is the part that changes from pose to pose that counts, and a score tells the gradient.
+/// Machines are judged by the spread of the response: its largest minus its least value over the poses. The rejects are
+/// compared with a count of all machines.
 TEST(Machines, JudgeTheSpreadOverThePoses) {
   constexpr std::size_t kPoses = 5;
   const Catalog catalog = test::fake_catalog();
@@ -295,8 +298,8 @@ TEST(Machines, JudgeTheSpreadOverThePoses) {
   EXPECT_EQ(run(study, test::FakeModel(), 1).machines->yield->value, yield.value);
 }
 
-/// One error makes the rejects, and others hardly anything: slope and step are those of that error alone. Polynomials
-/// find a twelfth of the slope.
+/// One error causes practically all rejects, so gradient and change have closed forms. An estimate with polynomials of
+/// the errors would find only a twelfth of the gradient.
 TEST(Machines, TellTheGradientByAnErrorThatAloneMakesTheRejects) {
   constexpr double kGood = 0.9973;
   const Catalog catalog = test::fake_catalog();
@@ -316,8 +319,8 @@ TEST(Machines, TellTheGradientByAnErrorThatAloneMakesTheRejects) {
   }
 }
 
-/// The step by each error is what another study finds whose error is a tenth larger, on the same uniforms, and no more
-/// of the yield is lost than there is.
+/// The change for each error equals the difference from a study in which this error is 10 % larger, with the same
+/// random numbers. The interval of the change does not go below minus the yield.
 TEST(Machines, TellWhatAStepChangesTheYieldBy) {
   constexpr std::size_t kMachines = 40'000;
   const Catalog catalog = test::fake_catalog();
@@ -330,7 +333,8 @@ TEST(Machines, TellWhatAStepChangesTheYieldBy) {
     Distribution& error = grown.errors.by_factor[p];
     error = p == 0 ? Distribution::uniform(0.33) : Distribution::normal(1.1 * error.sigma());
     const double expected = run(grown, LinearModel()).machines->yield->value - yield.value;
-    // Machines that cross the limit one way alone: the variance of their share; alpha 1e-4, three comparisons.
+    // The noise of the difference of the two studies comes from the machines that cross the limit (alpha = 1e-4 for
+    // three comparisons).
     const double half = 0.5 * (yield.change_ci_high(p) - yield.change_ci_low(p)) / 1.96;
     const double noise = std::hypot(half, std::sqrt(2.0 * std::abs(expected) / kMachines));
     EXPECT_NEAR(yield.change(p), expected, 4.2 * noise) << p;
@@ -350,13 +354,13 @@ TEST(Machines, TellTheSharesOfTheMeanSquare) {
     EXPECT_NEAR(yield.mean_square_share(0, p), expected[p], 1e-9);
     EXPECT_NEAR(yield.mean_square_share_ci_low(0, p), expected[p], 1e-6);
     EXPECT_NEAR(yield.mean_square_share_ci_high(0, p), expected[p], 1e-6);
-    EXPECT_TRUE(std::isnan(yield.mean_square_share(1, p)));  // without a limit
+    EXPECT_TRUE(std::isnan(yield.mean_square_share(1, p)));  // this response has no limit
   }
   EXPECT_NEAR(yield.linear_share(0), 1.0, 1e-9);
   EXPECT_TRUE(std::isnan(yield.linear_share(1)));
 }
 
-/// Seven machines do not tell three slopes, an offset and a rest.
+/// The linear fit has four unknowns (three slopes and an offset). Shares need at least twice as many machines.
 TEST(Machines, AreTooFewForSharesBelowTwiceTheUnknowns) {
   const Catalog catalog = test::fake_catalog();
   Study study = study_of(catalog, 2, 7, {0.1, 0.05, 0.2});
@@ -367,7 +371,7 @@ TEST(Machines, AreTooFewForSharesBelowTwiceTheUnknowns) {
   EXPECT_NEAR(run(study, LinearModel()).machines->yield->linear_share(0), 1.0, 1e-9);
 }
 
-/// A machine that is not solved at one pose is left out of the fit, and is a reject all the same.
+/// A machine that is not solved at some pose is left out of the linear fit, but it is a reject.
 TEST(Machines, ThatAreNotSolvedAreNotFitted) {
   const Catalog catalog = test::fake_catalog();
   Study study = study_of(catalog, 4, 5'000, {1e-3, 2e-3, 5e-3});
@@ -375,8 +379,8 @@ TEST(Machines, ThatAreNotSolvedAreNotFitted) {
   study.analysis.limits = {{0, 6e-4}};
   const YieldResult yield = *run(study, FailingModel()).machines->yield;
   EXPECT_GT(yield.unsolved, 0u);
-  // The response is a magnitude of which the model names no vector: hardly anything of it is linear, and polynomials
-  // tell the gradient.
+  // The response is a magnitude that belongs to no vector of the model, so little of it is linear in the errors. The
+  // gradient is then estimated with polynomials.
   EXPECT_LT(yield.linear_share(0), 0.5);
   EXPECT_LT(yield.gradient(1), 0.0);
 }
@@ -387,7 +391,7 @@ TEST(Machines, HaveAGradientByCorrelatedNormalErrors) {
   Study study = study_of(catalog, 3, 40'500, {0.1, 0.05, 0.2});
   study.analysis.limits = {{0, 0.3}};
   study.errors.correlated = {{{FactorIndex(0), FactorIndex(2)}, {1.0, kCorrelation, kCorrelation, 1.0}}};
-  // a_i t_i is 0.1 of each error
+  // slope x sigma is 0.1 for each error
   constexpr double kVariance = 0.03 + 0.02 * kCorrelation;
   const double density = std::exp(-0.5 * 0.09 / kVariance) / std::sqrt(2.0 * std::numbers::pi);
   const std::vector<Estimate> found = gradient_of(study);
@@ -405,7 +409,7 @@ TEST(Machines, HaveAGradientByCorrelatedNormalErrors) {
   EXPECT_TRUE(std::isnan(mixed[2].value));
 }
 
-/// Indices and curves of draws that are made anew at each pose.
+/// First-order indices and main effects if the errors are drawn anew at each pose.
 TEST(MonteCarloEffects, AreThoseOfALinearModel) {
   const Catalog catalog = test::fake_catalog();
   Study study = study_of(catalog, 11, 5'500, {0.1, 0.05, 0.2});
@@ -421,7 +425,8 @@ TEST(MonteCarloEffects, AreThoseOfALinearModel) {
   expect_lines(found.effects);
 }
 
-/// Everything that can be counted by hand, from the draws' addresses.
+/// Compares the counts with a loop over all machines. The errors are recomputed from the addresses of their random
+/// numbers.
 TEST(Machines, AgreeWithAllMachinesCountedOneByOne) {
   constexpr std::size_t kMachines = 2 * Plan::kUnitSamples + 77;
   constexpr std::size_t kPoses = 4;
@@ -491,7 +496,7 @@ TEST(Machines, HaveTheDrawsOfTheFirstPoseEverywhere) {
   EXPECT_EQ(poses.address(1, PoseIndex(2)).pose, PoseIndex(2));
 }
 
-/// A machine at a single pose is a sample there.
+/// With a single pose, machines are the same as samples.
 TEST(Machines, OfOnePoseAreItsSamples) {
   const Catalog catalog = test::fake_catalog();
   Study study = study_of(catalog, 1, 2500, {1e-3, 2e-3, 5e-3});
@@ -516,7 +521,8 @@ TEST(Machines, StopWhenTheMeansOfMachinesAreKnown) {
   study.analysis.adaptive = AdaptiveSamples{1000, 0.02};
   const MonteCarloResult found = run(study, test::FakeModel());
   ASSERT_TRUE(found.convergence);
-  // A folded normal: half-width 1.96 * 0.756 mean / sqrt(n), the same at every pose of a linear mechanism.
+  // The response is a folded normal with std = 0.756 mean, so n samples give the half-width 1.96 * 0.756 mean /
+  // sqrt(n). This ratio is the same at every pose of a linear mechanism.
   const auto needed = static_cast<std::uint64_t>(std::pow(1.96 * 0.756 / 0.02, 2));
   EXPECT_GT(found.convergence->samples[0], needed * 9 / 10);
   EXPECT_LT(found.convergence->samples[0], 2 * needed);

@@ -17,8 +17,8 @@ namespace {
 
 using Columns = std::vector<std::vector<double>>;
 
-/// The density of errors that were measured on parts of these weights, written down from its definition: each value
-/// spread evenly over its range, a Gaussian copula over it, with the correlation of the weighted ranks.
+/// The density of two measured errors, computed from its definition. Each measured part has a weight, and its value is
+/// spread evenly over its range. A Gaussian copula with the correlation of the weighted ranks joins the two errors.
 class WeightedParts {
  public:
   WeightedParts(const std::vector<SmoothedValues>& parts, std::vector<double> weights)
@@ -47,7 +47,7 @@ class WeightedParts {
                         std::sqrt((moments[2] - moments[0] * moments[0]) * (moments[3] - moments[1] * moments[1]));
     return 2.0 * std::sin(std::numbers::pi / 6.0 * rank);
   }
-  /// Of two errors.
+  /// The logarithm of the joint density of two errors x with the copula correlation rho.
   double log_density(const std::array<double, 2>& x, double rho) const {
     std::array<double, 2> z{};
     double sum = 0.0;
@@ -73,13 +73,13 @@ class WeightedParts {
   std::vector<double> weights_;
 };
 
-/// Twelve parts, whose sizes tend to go up together.
+/// Two errors measured on twelve parts, with a positive correlation.
 std::vector<SmoothedValues> twelve() {
   return {SmoothedValues({0.1, -0.4, 0.9, 1.7, -1.2, 0.3, -0.7, 0.5, -2.1, 1.1, -0.2, 0.8}),
           SmoothedValues({0.4, -0.9, 0.2, 2.3, -1.4, -0.3, 0.1, 1.5, -1.1, 0.6, -1.8, 0.7})};
 }
 
-/// Weights 1/n, with one of them a little larger and the others smaller in proportion.
+/// Weights 1 / n, mixed with the share `step` of all weight on one part. The sum is 1.
 std::vector<double> weights(std::size_t n, std::size_t part, double step) {
   std::vector<double> found(n, (1.0 - step) / static_cast<double>(n));
   found[part] += step;
@@ -107,7 +107,8 @@ TEST(PartGroup, KnowsHowPartsWeighInOneError) {
   }
 }
 
-/// own: whether the correlation is that of the parts.
+/// Compares the influence of each part on the log density of two errors with finite differences. own: whether the
+/// correlation is that of the parts; otherwise it is fixed.
 void expect_block(bool own) {
   const std::vector<SmoothedValues> parts = twelve();
   const WeightedParts even(parts, std::vector<double>(12, 1.0 / 12.0));
@@ -132,7 +133,7 @@ TEST(PartGroup, KnowsHowPartsWeighInErrorsOfAStatedCorrelation) { expect_block(f
 
 TEST(PartGroup, KnowsHowPartsWeighInTheirCorrelation) { expect_block(true); }
 
-/// Equal values are not spread, and then count alone.
+/// Equal values are not spread over a range. Their probability is the sum of their weights.
 TEST(PartGroup, CountsEqualValues) {
   const SmoothedValues parts({0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0});
   const PartGroup group = part_group({0}, {parts}, {});

@@ -1,4 +1,5 @@
-// How often the interval of machines and parts has the yield, by data sets drawn anew.
+// Coverage of the yield's interval that takes into account the scatter of machines and of measured parts, over random
+// data sets.
 
 #include <gtest/gtest.h>
 
@@ -29,13 +30,13 @@ std::vector<double> normals(std::size_t count, Engine& engine) {
   return values;
 }
 
-/// A machine is good if the magnitude of the sum of its errors, standard normals in truth, is within a limit.
+/// A machine is good if the magnitude of the sum of its errors is within a limit. The true errors are standard normal.
 struct PartsCase {
   std::string name;
   std::size_t errors;
-  std::size_t parts;         ///< of each error
-  double correlation = 0.0;  ///< of each two errors; 0: none, and none is looked for
-  double yield = 0.95;       ///< in truth
+  std::size_t parts;         ///< number of parts on which each error is measured
+  double correlation = 0.0;  ///< of any two errors; 0: the errors are treated as independent
+  double yield = 0.95;       ///< true yield
 
   double limit() const {
     const auto k = static_cast<double>(errors);
@@ -44,7 +45,7 @@ struct PartsCase {
   }
 };
 
-/// Rows of normals, each two with this correlation: by one that all share.
+/// [errors x count] Standard normal numbers. A common normal number gives any two errors this correlation.
 std::vector<std::vector<double>> rows(std::size_t errors, std::size_t count, double correlation, Engine& engine) {
   std::vector<std::vector<double>> found(errors);
   const std::vector<double> common = normals(count, engine);
@@ -78,7 +79,8 @@ PartGroups groups_of(const PartsCase& one, const std::vector<std::vector<double>
   return groups;
 }
 
-/// The intervals of machines and parts, and of machines alone, of one data set.
+/// Two intervals of the yield from one data set: with the scatter of machines and parts, and with that of machines
+/// only.
 struct TwoIntervals {
   Interval parts;
   Interval machines;
@@ -137,7 +139,7 @@ TEST_P(PartsInterval, HoldsTheYield) {
   }
   RecordProperty(one.name, std::to_string(parts.share()));
   RecordProperty(one.name + "_machines", std::to_string(machines.share()));
-  // Four points below the level are allowed, and 3.1 standard errors of what is measured: alpha is 0.1 %.
+  // The coverage may be four percentage points below 95 %, less 3.1 standard errors of this simulation (alpha = 0.1 %).
   EXPECT_GT(parts.share(), 0.91 - 3.1 * std::sqrt(0.09 * 0.91 / kSets)) << one.name;
   EXPECT_LT(machines.share(), 0.5) << one.name;
 }

@@ -1,5 +1,5 @@
-// All errors of a real mechanism at once, 10 000 samples at a pose: the streamed quantiles against a plain sort of the
-// same samples, which are drawn one by one and solved as a table of errors.
+// Compares the streamed quantiles of a Monte Carlo study with a plain sort of the same samples, which are drawn one by
+// one and solved as a table of errors. All errors of a real mechanism vary, with 10 000 samples at each pose.
 
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ ErrorTable table_of(const Study& study, PoseIndex pose) {
   return table;
 }
 
-/// Every response's solved samples at a pose, [R].
+/// [responses] For each response, the values of the solved samples at pose m.
 std::vector<std::vector<double>> solved_samples(const Study& study, const Model& model, const PoseSet& poses,
                                                 PoseIndex m) {
   const PoseSet pose(poses.coordinates(), {poses[m].begin(), poses[m].end()});

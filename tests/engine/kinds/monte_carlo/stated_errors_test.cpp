@@ -1,4 +1,5 @@
-// Machines whose errors have a mean, or are drawn anew at each pose, against closed forms.
+// Machines whose errors have a mean or are drawn anew at each pose. Yields and gradients are compared with closed
+// forms.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +22,7 @@ constexpr std::array<double, 3> kSlopes{1.0, 2.0, 0.5};
 constexpr double kLimit = 0.3;
 constexpr double kErrors = 4.4;  // standard errors; alpha 1e-5, so below 1e-3 for all comparisons here
 
-/// y = a . e, the same at each pose.
+/// y = a . e with a = kSlopes, the same at each pose.
 test::FunctionModel linear_model() {
   return {3, {"y"}, [](std::span<const double> errors, double, std::span<double> responses) {
             responses[0] = 0.0;
@@ -57,12 +58,12 @@ struct MachineCase {
 
 double normal_below(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
 
-/// The share of N(mean, sigma^2) within the limit.
+/// The probability that a variable N(mean, sigma^2) is within the limit.
 double share_within(double mean, double sigma) {
   return normal_below((kLimit - mean) / sigma) - normal_below((-kLimit - mean) / sigma);
 }
 
-/// The derivative of f at x.
+/// The derivative of f at x by central differences of fourth order.
 double slope(const std::function<double(double)>& f, double x) {
   const double step = 1e-4 * x;
   return (8.0 * (f(x + step) - f(x - step)) - (f(x + 2.0 * step) - f(x - 2.0 * step))) / (12.0 * step);
@@ -75,7 +76,7 @@ void expect_yield(const YieldResult& found, double expected) {
   EXPECT_GT(found.ci_high, found.value);
 }
 
-/// widest: the largest half of the interval over the gradient.
+/// Expects the gradient by error p. widest: largest half-width of the interval, relative to the expected gradient.
 void expect_gradient(const YieldResult& found, std::size_t p, double expected, double widest) {
   const double half = 0.5 * (found.gradient_ci_high(p) - found.gradient_ci_low(p));
   EXPECT_NEAR(found.gradient(p), expected, half * kErrors / 1.96) << p;
@@ -108,7 +109,7 @@ TEST(StatedMean, MovesTheYieldOfNormalMachines) {
   EXPECT_NEAR(found.machines->yield->linear_share(0), 1.0, 1e-9);
 }
 
-/// Twelve measured parts about a mean, with the standard deviation 1.
+/// Twelve measured values with this mean and this standard deviation.
 std::vector<double> parts(double mean, double sigma) {
   std::vector<double> values;
   const double unit = std::sqrt(13.0);  // standard deviation (n - 1) of twelve consecutive numbers
@@ -116,8 +117,8 @@ std::vector<double> parts(double mean, double sigma) {
   return values;
 }
 
-/// The means of measured errors partly cancel each other in the response. Shares are of its scatter, and its mean is
-/// stated: both against all 40 500 machines that the study draws.
+/// The means of the measured errors partly cancel each other in the response. The shares refer only to the scatter of
+/// the response; its mean is stated separately.
 TEST(MeasuredErrors, ShareTheScatterWithoutTheirMeans) {
   MachineCase one(1);
   constexpr std::array kMean{0.3, -0.1, -0.05};
@@ -167,8 +168,8 @@ TEST(StatedMean, MovesCorrelatedErrors) {
   }
 }
 
-/// The share of a sum of uniforms within the limit, each between mean - w and mean + w after its slope: the volume of a
-/// cube behind a plane, by inclusion and exclusion of its corners.
+/// The probability that mean + u1 + u2 + u3 is within the limit, for uniform terms u_p with the half-widths w_p.
+/// Computed as the volume of a box on one side of a plane, by inclusion and exclusion of the corners.
 double uniform_share(const std::array<double, 3>& w, double mean) {
   const auto below = [&](double y) {
     double sum = 0.0;
@@ -204,13 +205,13 @@ TEST(StatedMean, MovesTheYieldOfUniformMachines) {
     return uniform_share(w, mean);
   };
   expect_yield(*found.machines->yield, yield_at(0, kHalf[0]));
-  for (std::size_t p = 0; p < 3; ++p) {  // by the standard deviation
+  for (std::size_t p = 0; p < 3; ++p) {  // the gradient is by the standard deviation
     const double expected = slope([&](double half) { return yield_at(p, half); }, kHalf[p]) * std::sqrt(3.0);
     expect_gradient(*found.machines->yield, p, expected, 0.1);
   }
 }
 
-/// A machine has one error e1 and at each pose its own e2 and e3, so it is good with the probability E[P(good | e1)^M].
+/// The yield if e1 is drawn once for a machine, but e2 and e3 anew at each pose: E[P(good at a pose | e1)^poses].
 double repeated_yield(const std::array<double, 3>& sigma, std::size_t poses) {
   const double anew = std::hypot(kSlopes[1] * sigma[1], kSlopes[2] * sigma[2]);
   const auto of_fixed = [&](double z) {

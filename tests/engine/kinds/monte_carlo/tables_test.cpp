@@ -102,7 +102,7 @@ TEST(MonteCarloTable, NamesSomeOfManyPosesLikeTheWorstByCoordinates) {
   result.poses = PoseSet(1, coordinates);
   found.quantiles_ci_low = MonteCarloResult::QuantilesAtPoses({1, kPoses, 1}, 1.5);
   found.quantiles_ci_high = MonteCarloResult::QuantilesAtPoses({1, kPoses, 1}, 12.0);
-  found.quantiles_ci_high(0, 0, 0) = 1.5;  // up to the lower end, not above it
+  found.quantiles_ci_high(0, 0, 0) = 1.5;  // ends where the interval of the largest begins
   result.headline = {0};
   found.mean = MonteCarloResult::AtPoses({1, kPoses}, 1.0);
   const Table table = monte_carlo_tables(result).at(1);
@@ -132,7 +132,8 @@ TEST(LimitsTable, SaysPassOrFailWithBothNumbers) {
             "within: the share of all draws that are within the limit\n");
 }
 
-/// Because a root mean square within a limit says nothing of single samples.
+/// The caption states the judge (here rms) first and adds the share of samples beyond the limit, because an rms within
+/// the limit does not mean that all samples are.
 TEST(LimitsTable, SaysFirstWhatIsJudgedAndHowManySamplesAreBeyond) {
   StoredResult result = example();
   LimitVerdict one{.response = 0, .limit = 3e-5, .value = 2e-5, .passed = true, .tried = 1000, .within = 906};
@@ -149,7 +150,8 @@ TEST(LimitsTable, SaysFirstWhatIsJudgedAndHowManySamplesAreBeyond) {
             "PASS by 95 % of the draws at the worst pose: the limit is kept; all samples are within it");
 }
 
-/// Estimates have four digits, and six where four read as the limit; the cell has the number.
+/// Estimates are shown with four digits, but with six if four digits would look like the limit. The cell keeps the full
+/// value.
 TEST(LimitsTable, HasTheDigitsThatTellAValueFromItsLimit) {
   StoredResult result = example();
   const auto cell = [&](double value, const ValueLimit& limit) {
@@ -219,11 +221,11 @@ TEST(MonteCarloTable, ShowsTheHeadlineAlone) {
     ASSERT_EQ(table.rows.size(), 1U);
     EXPECT_EQ(table.rows[0][0].text, "ratio");
   }
-  ASSERT_EQ(tables[2].columns.size(), 4U);  // the error, and the index with its interval
+  ASSERT_EQ(tables[2].columns.size(), 4U);  // the error, its index and the two ends of the interval
   EXPECT_EQ(tables[2].columns[1].name, "S1_ratio");
 }
 
-/// Five errors of machines with limits on both responses.
+/// A result of machines with five errors and limits on both responses.
 StoredResult example_of_machines() {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   StoredResult result = example();
@@ -288,7 +290,7 @@ TEST(MonteCarloTable, StatesTheMeanThatIsInNoShare) {
   yield.offset = {{2}, {25e-6, 0.5}};
   yield.offset_share = {{2}, {0.42, 0.0009}};
   const std::vector<std::string> notes = monte_carlo_tables(result)[0].notes;
-  ASSERT_EQ(notes.size(), 4U);  // none on the second response, whose mean is hardly a part of it
+  ASSERT_EQ(notes.size(), 4U);  // no note on the second response, whose mean is negligible
   EXPECT_EQ(notes[2],
             "linear_deformation: not in these shares is its mean over the machines, 0.025 mm as a root mean square "
             "over the poses: 42 % of the whole mean square. Background and means of all errors make it together, with "
@@ -327,7 +329,7 @@ TEST(MonteCarloTable, SaysThatFewRejectsTellLittle) {
 TEST(MonteCarloTable, ShowsNoEffectThatIsChanceAmongMany) {
   StoredResult result = example_of_machines();
   YieldResult& yield = *monte_carlo_in(result).machines->yield;
-  yield.change_ci_high = {{5}, {-0.0005, -0.15, 0.003, 0.0001, yield.change(4)}};  // delta_1 alone is told at 95 %
+  yield.change_ci_high = {{5}, {-0.0005, -0.15, 0.003, 0.0001, yield.change(4)}};  // delta_1: certain alone
   yield.change_ci_low = {{5}, {-0.0195, -0.25, -0.001, -0.004, yield.change(4)}};
   const Table table = monte_carlo_tables(result)[1];
   EXPECT_EQ(table.rows[0][0].text, "epsilon_1");
@@ -344,7 +346,7 @@ TEST(MonteCarloTable, ShowsNoEffectThatIsChanceAmongMany) {
   EXPECT_EQ(table.notes[3], "share of scatter: of the scatter of linear_deformation");
 }
 
-/// However certain its effect seems.
+/// An error without a share of the scatter is not listed, even if the interval of its effect excludes zero.
 TEST(MonteCarloTable, ShowsNoEffectOfAnErrorWithoutAShare) {
   StoredResult result = example_of_machines();
   YieldResult& yield = *monte_carlo_in(result).machines->yield;
@@ -352,7 +354,7 @@ TEST(MonteCarloTable, ShowsNoEffectOfAnErrorWithoutAShare) {
   const Table table = monte_carlo_tables(result)[1];
   EXPECT_EQ(table.rows[0][0].text, "delta_1");
   EXPECT_EQ(table.rows[1][0].text, "3 errors whose effects are not certain");
-  // A share that may be zero comes after those that are not.
+  // Errors whose share may be zero are listed last.
   yield.mean_square_share(0, 1) = 0.001;
   yield.mean_square_share_ci_low(0, 1) = yield.mean_square_share_ci_low(1, 1) = 0.0;
   const Table other = monte_carlo_tables(result)[1];
@@ -360,7 +362,7 @@ TEST(MonteCarloTable, ShowsNoEffectOfAnErrorWithoutAShare) {
   EXPECT_EQ(other.rows[1][0].text, "epsilon_1");
 }
 
-/// Files of version 0.2 have the slope alone.
+/// Files of version 0.2 have only the gradient, so the table shows the change for 10 % of the standard deviation.
 TEST(MonteCarloTable, TakesAPartOfTheSlopeWhereAFileHasNoChange) {
   StoredResult result = example_of_machines();
   YieldResult& yield = *monte_carlo_in(result).machines->yield;
@@ -372,7 +374,7 @@ TEST(MonteCarloTable, TakesAPartOfTheSlopeWhereAFileHasNoChange) {
   const Table table = monte_carlo_tables(result).front();
   ASSERT_EQ(table.name, "yield_gradient");
   EXPECT_NEAR(table.rows[0][1].value.value(), -2.0, 1e-12);
-  EXPECT_EQ(table.rows[0][2].value.value(), -75.0);  // all of the yield and no more
+  EXPECT_EQ(table.rows[0][2].value.value(), -75.0);  // at most the whole yield
   EXPECT_EQ(table.rows[2][0].text, "2 errors whose effects are not certain");
 }
 
@@ -412,7 +414,7 @@ TEST(FailuresText, CountsTheSolvesOfAllPosesOnce) {
             "replay it: poesy replay 'my r.h5' all 2 7\n");
 }
 
-/// A length is first, but one that does not vary comes after a number that does.
+/// The default is a response that is a length, unless it is constant and another response varies.
 TEST(DefaultRanking, IsByWhatVaries) {
   StoredResult result = example();
   EXPECT_EQ(default_ranking(result), "linear_deformation");

@@ -17,7 +17,7 @@ constexpr std::size_t kResponses = 2;
 constexpr std::size_t kPoses = 3;
 constexpr std::size_t kCells = 2 * kPoses;
 
-/// Every bit of a cell.
+/// The stored state of a cell's statistics, for comparisons bit by bit.
 Bytes bits(UnitStats stats) {
   ByteWriter to;
   Archive archive(to);
@@ -25,7 +25,7 @@ Bytes bits(UnitStats stats) {
   return to.take();
 }
 
-/// A study of two errors at three poses some of whose samples fail, and its units, solved.
+/// A study of two errors at three poses, with all its units solved. Some samples fail.
 struct Solved {
   explicit Solved(std::size_t samples) : prepared(study_of(&kSensitivityStudy, samples)) {
     UnitEvaluator evaluate(plan(), *prepared.model);
@@ -35,7 +35,7 @@ struct Solved {
   const Plan& plan() const { return prepared.plan; }
   std::size_t cell_of(std::size_t u) const { return u / plan().units_per_cell(); }
 
-  /// Some of a cell's units, merged one by one.
+  /// The units from first_unit to end_unit of a cell, merged one after the other.
   UnitStats one_by_one(std::size_t cell, std::size_t first_unit, std::size_t end_unit) const {
     UnitStats merged;
     merged.responses.resize(kResponses);
@@ -44,7 +44,7 @@ struct Solved {
   }
   UnitStats one_by_one(std::size_t cell) const { return one_by_one(cell, 0, plan().units_per_cell()); }
 
-  /// The same of all cells.
+  /// All cells, each with its units from first_unit to end_unit.
   CellStats cells(std::size_t first_unit, std::size_t end_unit) const {
     CellStats merged(kResponses, kCells);
     for (std::size_t cell = 0; cell < kCells; ++cell) {
@@ -56,7 +56,7 @@ struct Solved {
   }
 
   SensitivityCollector collector(const Shard& shard = Shard()) const { return {plan(), kResponses, 0.95, shard}; }
-  /// With the shard's units, all of them.
+  /// A collector that has all units of this shard.
   SensitivityCollector collected(const Shard& shard = Shard()) const {
     SensitivityCollector collect = collector(shard);
     for (std::size_t u = 0; u < plan().units(); ++u) {
@@ -66,10 +66,10 @@ struct Solved {
   }
 
   Prepared prepared;
-  std::vector<CellUnit> found;  ///< [units]
+  std::vector<CellUnit> found;  ///< [units] statistics of each unit
 };
 
-/// Of a study with so many samples.
+/// The stored state of a collector. samples: number of samples of the study.
 Bytes state_of(SensitivityCollector collect, std::size_t samples) {
   ByteWriter to;
   Archive archive(to);
@@ -77,7 +77,7 @@ Bytes state_of(SensitivityCollector collect, std::size_t samples) {
   return to.take();
 }
 
-/// Takes up states of a study with so many samples.
+/// Restores a collector from its stored states. samples: number of samples of the study.
 void take_up(SensitivityCollector& collect, const Bytes& states, std::size_t samples) {
   ByteReader from(states);
   Archive archive(from);
@@ -91,7 +91,7 @@ void expect_units_one_by_one(const CellStats& cells, const Solved& solved) {
   }
 }
 
-/// Why the collector refuses it; nothing where it takes it up.
+/// The message with which the collector refuses a stored state. Empty if it accepts the state.
 std::string refusal(SensitivityCollector collect, const Bytes& state, std::size_t samples) {
   try {
     take_up(collect, state, samples);
@@ -114,7 +114,7 @@ TEST(CellStats, AreTheirUnitsMergedOneByOne) {
   const Solved solved(3300);
   const CellStats cells = solved.cells(0, 4);
   expect_units_one_by_one(cells, solved);
-  EXPECT_FALSE(cells.at(0).failed.first().empty());  // or the study says nothing of failures
+  EXPECT_FALSE(cells.at(0).failed.first().empty());  // the study has failed samples
 }
 
 TEST(CellStats, APartHasTheSameCells) {
@@ -138,12 +138,12 @@ TEST(CellStats, OfLaterSamplesAreMergedCellByCell) {
       expected.merge(solved.one_by_one(cell, k, 4));
       EXPECT_EQ(bits(cells.at(cell)), bits(expected)) << k << " units of cell " << cell;
     }
-    // One unit more is nothing but that unit: then the cells are their units one by one.
+    // If the merged part is a single unit, the result has the same bits as merging all units one after the other.
     if (k == 3) expect_units_one_by_one(cells, solved);
   }
 }
 
-/// Samples of a study: whole units alone, a smaller last unit alone, and both.
+/// Parameter: number of samples, so that a cell has whole units only, one smaller unit only, or both.
 class Collector : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(Collector, HasTheUnitsOneByOne) {

@@ -17,7 +17,7 @@
 namespace poesy {
 namespace {
 
-/// The example's result with a second fidelity beside it.
+/// The example's result with a second fidelity.
 class FidelityFile : public testing::Test {
  protected:
   FidelityFile() {

@@ -15,7 +15,7 @@ namespace {
 using Model = test::TwoFidelitiesModel;
 using Verdicts = Array<std::uint8_t, axis::Factor>;
 
-/// Both fidelities on the same draws, every error with this standard deviation.
+/// Compares both fidelities on the same draws. sigma: standard deviation of every error.
 FidelityResult compared(double sigma, std::size_t samples) {
   const Catalog catalog = test::two_fidelities_catalog();
   Study study;
@@ -34,8 +34,9 @@ FidelityResult compared(double sigma, std::size_t samples) {
   return compare_fidelities(run(study.mechanism), run(at_compared_fidelity(study.mechanism)), dimensions, sigmas, 0.01);
 }
 
-// Relative to the shift of the mean, bend sigma^2, its sampling error over both poses together is sqrt(1 / samples),
-// and the spread's change adds less than 1e-3 to the hypot: five standard errors, alpha = 6e-7.
+// The exact fidelity shifts the mean by bend sigma^2. The sampling error of this shift over both poses is sqrt(1 /
+// samples) of it; the test allows five of them (alpha = 6e-7). The change of the standard deviation adds less than
+// 1e-3.
 TEST(FidelityOfAQuadraticModel, HasItsClosedForm) {
   constexpr std::size_t kSamples = 200'000;
   const double tolerance = 5.0 / std::sqrt(double{kSamples}) + 1e-3;
@@ -46,13 +47,14 @@ TEST(FidelityOfAQuadraticModel, HasItsClosedForm) {
     const double spread = std::sqrt(weight * weight + 2.0 * Model::kBend * Model::kBend * sigma * sigma);
     const double expected = std::hypot(Model::kBend * sigma, spread - weight) / spread;
     EXPECT_NEAR(found.nonlinearity(0, p) / expected, 1.0, tolerance) << p;
-    // The index itself hardly notices.
+    // The index changes much less than the mean.
     EXPECT_LT(std::abs(found.relative_discrepancy(0, p)), 0.1 * expected);
   }
   EXPECT_TRUE(std::isnan(found.nonlinearity(0, 2)));
 }
 
-// Verdicts turn where bend sigma / weight is 1 %: at sigma = 0.04 for delta_1, at 0.02 for epsilon_1.
+// An error counts as linear while bend sigma / weight is below 1 %: up to sigma = 0.04 for delta_1 and 0.02 for
+// epsilon_1.
 TEST(FidelityOfAQuadraticModel, VerdictsTurnWithTheSize) {
   EXPECT_EQ(compared(0.015, 20'000).linear, Verdicts({3}, {1, 1, 1}));
   EXPECT_EQ(compared(0.025, 20'000).linear, Verdicts({3}, {1, 0, 1}));

@@ -75,7 +75,7 @@ TEST(CompareFidelities, NoEffectAtEitherIsLinearWithoutRatios) {
 }
 
 TEST(CompareFidelities, RoundingOfSmallErrorsIsNoEffect) {
-  constexpr double kSmall = 1e-6;  // a spread of 1e-15 is an index of 1e-9
+  constexpr double kSmall = 1e-6;  // with this sigma, rounding of 1e-15 gives an index of 1e-9
   EXPECT_EQ(compare(result_of({1e-9, 0.0, 2.0}), result_of({0.0, 0.0, 2.0}), kSmall).linear(0), 1);
   EXPECT_EQ(compare(result_of({1e-9, 0.0, 2.0}), result_of({0.0, 0.0, 2.0})).linear(0), 0);
 }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Of delta_b, epsilon_a, delta_c, delta_a; the last has no index.
+/// changes: of the indices of delta_b, epsilon_a, delta_c, delta_a; the last error has no index.
 StoredResult result(const std::vector<double>& changes) {
   StoredResult stored = ranked_result();
   std::ranges::fill(sensitivity_in(stored).index_change, kNaN);
@@ -22,7 +22,7 @@ StoredResult result(const std::vector<double>& changes) {
   return stored;
 }
 
-/// Without a limit, these tolerances of equal effect.
+/// Tolerances without a limit. equal_effect: the tolerances of equal effect (m, rad).
 ResponseTolerances tolerances(std::vector<double> equal_effect) {
   ResponseTolerances found{.response = 0, .all = {}, .limit = std::nullopt};
   found.all.reference = ReferenceError{0, 1e-3};
@@ -79,8 +79,9 @@ TEST(WrongSizes, AreTolerancesOfAnotherSizeWhereTheIndexChanges) {
       << "no effect";
 }
 
-// At the size of the tolerance a quadratic error would be found a hundred times smaller, and so its tolerance be again
-// that of the first study.
+// A new study of a quadratic error should use the geometric mean of the studied size (1 mm) and its tolerance (0.01
+// mm). At 0.01 mm its effect would be 100 times too small for the linear law, which would give 1 mm as its tolerance
+// again.
 TEST(WrongSizes, OfAQuadraticErrorAreStudiedInTheMiddle) {
   const StoredResult stored = result({-0.9, 0.01, 0.0});
   const std::string text = wrong_sizes_text(stored, tolerances({0.01e-3, 1e-6, 2e-3, kNaN}));
@@ -99,7 +100,7 @@ TEST(WrongSizes, OfALimitAreThoseOfEitherWayToShareIt) {
 TEST(Negligible, ErrorsChangeWithSizeAndAddNextToNothing) {
   const StoredResult stored = result({-0.5, -0.5, 0.0});  // studied at 1 mm, 0.5 deg, 2 mm
   const double angle = stored.factor_sigma[1];
-  const double most = 1e-3 / 4.0;  // a thousandth for all four errors together
+  const double most = 1e-3 / 4.0;  // at most a thousandth of the mean square for four errors together
   const auto found = [&](double of_length, double of_angle) {
     return negligible_errors(stored, 0, {0.0, {of_length / 1e-6, of_angle / (angle * angle), 1e-9, kNaN}}, 1.0);
   };

@@ -25,7 +25,7 @@ Study with_samples(Study study, std::size_t samples) {
   return study;
 }
 
-/// What a history says of the indices after k of its points.
+/// The bits of the indices and intervals at point k of a history.
 Bits at_point(const EstimateCourse& history, std::size_t k) {
   Bits bits;
   for (const auto* values : {&history.value, &history.ci_low, &history.ci_high}) {
@@ -41,7 +41,8 @@ Bits indices(const SensitivityResult& result) {
   return bits;
 }
 
-/// Each point is the result of a study with exactly so many samples, and the last one the result itself.
+/// Expects that each point of the history equals the result of a study with that number of samples. The last point is
+/// the result itself.
 void expect_results_of_shorter_studies(const Study& study) {
   const SensitivityResult result = result_of(study);
   ASSERT_TRUE(result.history);
@@ -82,7 +83,7 @@ TEST_P(History, OfAMechanismIsOfShorterOnes) {
 
 TEST_P(History, IsUnknownWhereAPoseHasNoIndex) {
   Study study = failing(5000);
-  study.errors.by_factor.assign(3, Distribution::normal(0.3));  // one sample in a hundred is solved
+  study.errors.by_factor.assign(3, Distribution::normal(0.3));  // only one sample in a hundred is solved
   expect_results_of_shorter_studies(study);
   if (GetParam() == NotConverged::include) return;
   const EstimateCourse history = result_of(study).history.value();
@@ -137,7 +138,7 @@ TEST(History, KeepsThePosesOfOneErrorAtATime) {
   }
   const std::size_t of_slot = kPoints * kResponses * 3 * sizeof(double);
   const std::size_t of_poses = kPoints * kResponses * (poses - 1) * sizeof(LocalIndex);
-  EXPECT_EQ(largest, of_slot + of_poses);  // the first error is done, the second at its last pose
+  EXPECT_EQ(largest, of_slot + of_poses);  // largest when the first error is done and the second is at its last pose
   EXPECT_EQ(state_size(), 2 * of_slot);
 }
 

@@ -61,7 +61,7 @@ class CurveModel final : public FakeModel {
   double rounding_;
 };
 
-/// The change of the index of one error with this curve.
+/// The relative change of the index of one error at a tenth of its size, for a model with this curve.
 double change_of(const CurveModel::Curve& curve, double rounding = 0.0, std::size_t samples = 200) {
   Study study = study_of(&kSensitivityStudy, samples);
   study.analysis.factors = {FactorIndex(0)};
@@ -83,8 +83,9 @@ TEST(IndexChanges, OfALinearErrorAreNone) {
 TEST(IndexChanges, OfAQuadraticErrorAreNineTenths) { EXPECT_NEAR(change_of(quadratic), -0.9, 1e-12); }
 
 TEST(IndexChanges, SeeNoCurvatureThatAveragesOut) {
-  // std^2 = 1 + 2 bend^2 sigma^2 for a normal error: two parts in ten thousand. Without mirror images the product of
-  // both terms, whose mean is zero, would change the index of 16 draws by some percent.
+  // For a normal error (std / sigma)^2 = 1 + 2 bend^2 sigma^2, which differs from 1 by 2e-4. The test uses 16 draws in
+  // pairs e and -e. Without these pairs, the product of the linear and the quadratic term would not average out and
+  // would change the index by several percent.
   const double bend = 0.01 / kSigma;
   const double change = change_of([&](double error, SolveStatus&) { return error + bend * error * error; });
   EXPECT_LT(std::abs(change), 1e-3);
@@ -94,7 +95,7 @@ TEST(IndexChanges, SeeNoCurvatureThatAveragesOut) {
 TEST(IndexChanges, OfEffectsThatAreRoundingAreUnknown) {
   EXPECT_TRUE(std::isnan(change_of([](double, SolveStatus&) { return 0.0; })));
   EXPECT_TRUE(std::isnan(change_of([](double error, SolveStatus&) { return 1e-12 * error; })));
-  // An index of 2, which is told from rounding at the study's size but not at a tenth of it.
+  // The index 2 is above the rounding at the size of the study, but not always at a tenth of this size.
   EXPECT_NEAR(change_of(linear, 0.1 * kSigma), 0.0, 1e-12);
   EXPECT_TRUE(std::isnan(change_of(linear, 0.5 * kSigma)));
   EXPECT_TRUE(std::isnan(change_of(linear, 5.0 * kSigma)));

@@ -16,10 +16,10 @@ using namespace test;
 
 using Points = std::vector<PlatformPoint>;
 
-/// Points whose middle is not the platform's origin, one of them at distance 0.2 m from it.
+/// Three points (m) whose centroid is not the origin of the platform. The first is 0.2 m from the centroid.
 const Points kPoints{{1.2, 2.0, 0.0}, {0.9, 2.1, 0.0}, {0.9, 1.9, 0.0}};
 
-/// How far the first point is from the middle (m).
+/// The distance (m) of the first point from the centroid.
 double radius_of(const Points& points) {
   double squares = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -29,8 +29,8 @@ double radius_of(const Points& points) {
   return std::sqrt(squares);
 }
 
-/// Its three errors have effects in the ratio of 1, rho and 2 rho^2 on the first response, with rho = radius / 0.2 m
-/// times `own`, and of 1, 2 and 3 on the second, whatever the radius.
+/// A model with three errors. Their effects on the first response are as 1 : rho : 2 rho^2, with rho = own x radius /
+/// 0.2 m. Their effects on the second response are as 1 : 2 : 3 and do not depend on the radius.
 class RadiusModel final : public FakeModel {
  public:
   explicit RadiusModel(const Points& points, double own) : points_(points), rho_(own * radius_of(points) / 0.2) {}
@@ -81,8 +81,8 @@ Array<double, axis::RadiusMultiple, axis::Response> correlations(const CatalogEn
   return radius_rank_correlations(study, Prepared(study).plan);
 }
 
-// With own = 0.7 the effects are 1, 0.7, 0.98; at half 1, 0.35, 0.245; at twice 1, 1.4, 3.92. At half one of three
-// pairs changes its order, at twice two do.
+// With own = 0.7 the effects are 1, 0.7, 0.98; with half the radius 1, 0.35, 0.245; with twice the radius 1, 1.4, 3.92.
+// So one of three pairs changes its order with half the radius, and two pairs with twice the radius.
 TEST(PointsRadius, IsComparedByTheOrderOfEffects) {
   const auto tau = correlations(radius_entry(0.7));
   ASSERT_EQ(tau.size(), 4U);
@@ -96,7 +96,7 @@ TEST(PointsRadius, IsNothingToAResponseThatDoesNotDependOnIt) {
   EXPECT_DOUBLE_EQ(tau(1, 1), 1.0);
 }
 
-// The run has its result by then, which must not be lost.
+// Refused points must not throw, because the study's result would be lost. The correlations are NaN.
 TEST(PointsRadius, IsNotKnownWhereTheMechanismRefusesThePoints) {
   CatalogEntry entry = radius_entry(0.7);
   entry.build_with_points = [](auto, std::size_t, std::span<const PlatformPoint> points) {

@@ -7,8 +7,8 @@
 
 namespace poesy {
 
-/// A sensitivity result of four errors, one of which has no index, and three responses. By the published index the
-/// errors have another order than by the corrected one.
+/// A sensitivity result with four errors, one of them without an index, and three responses. The published index and
+/// the corrected index rank the errors differently.
 inline StoredResult ranked_result() {
   StoredResult result;
   result.kind = "sensitivity";

@@ -27,7 +27,7 @@ TEST(RankedTable, ShowsEffectIndexIntervalAndSigma) {
   Table table = result_tables(result, "x").front();
   table.notes.clear();
   for (std::vector<Cell>& row : table.rows) row.erase(row.begin() + 8, row.begin() + 11);
-  table.columns.erase(table.columns.begin() + 8, table.columns.begin() + 11);  // the other response
+  table.columns.erase(table.columns.begin() + 8, table.columns.begin() + 11);  // columns of the other response
   EXPECT_EQ(text_of(table, kUnlimitedWidth),
             "Effect of each error on x at the size the study gives it\n"
             "                                                                        at a        not\n"
@@ -42,12 +42,12 @@ TEST(RankedTable, ShowsEffectIndexIntervalAndSigma) {
 TEST(RankedTable, HasTheHeadlinesOtherResponses) {
   const StoredResult result = ranked_result();
   const Table table = result_tables(result, "x").front();
-  ASSERT_EQ(table.columns.size(), 14U);  // one without a dimension is none of them
+  ASSERT_EQ(table.columns.size(), 14U);  // the response without a dimension has no column
   EXPECT_EQ(table.columns[8].name, "index_tilt");
   EXPECT_EQ(table.columns[8].unit, "deg/unit");
   EXPECT_EQ(table.rows[0][8].text, "0.7");
   EXPECT_EQ(table.rows[0][10].text, "0.8");
-  EXPECT_EQ(table.rows[2][8].text, "0");  // rounding
+  EXPECT_EQ(table.rows[2][8].text, "0");  // below rounding, so shown as 0
   EXPECT_NE(table.rows[2][8].value, 0.0);
 }
 
@@ -69,7 +69,7 @@ TEST(RankedTable, RanksByTheCorrectedIndex) {
 TEST(RankedTable, SaysWhichErrorsAreTooSmallToTell) {
   StoredResult result = ranked_result();
   const std::size_t notes = result_tables(result, "x").front().notes.size();
-  result.factor_sigma[3] = 1e-11;  // of which no index is known
+  result.factor_sigma[3] = 1e-11;  // the error without an index
   const Table table = result_tables(result, "x").front();
   EXPECT_EQ(table.rows[3][3].text, "rounding");
   EXPECT_FALSE(table.rows[3][3].value);
@@ -92,7 +92,7 @@ TEST(RankedTable, SaysHowOftenIntervalsOfFewSamplesHold) {
   };
   EXPECT_TRUE(note(50).starts_with("50 samples at each pose are few")) << note(50);
   EXPECT_EQ(note(200), "");
-  sensitivity_in(result).index_change(0, 0) = -0.9;  // of the first response, by which the table ranks
+  sensitivity_in(result).index_change(0, 0) = -0.9;  // the table ranks by the first response
   EXPECT_TRUE(note(200).starts_with("200 samples at each pose are few"));
   EXPECT_EQ(note(1000), "");
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// The example's result, of a model that separates its errors: values count on through the arrays.
+/// The example's sensitivity result for a model that separates its errors. The values count up through all arrays.
 class SeparationFile : public testing::Test {
  protected:
   SeparationFile() {

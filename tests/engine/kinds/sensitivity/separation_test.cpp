@@ -11,7 +11,7 @@
 namespace poesy {
 namespace {
 
-/// All lengths grow with -z, which is 1, 2, ... at the poses below; delta_2 has no effect.
+/// A model whose separation is proportional to s = -z, the height that the tests choose. delta_2 has no effect.
 class SeparatingModel final : public test::FakeModel {
  public:
   SeparatingModel() { described_.separation = {"how far the platform moves", {"compensable", "", "non-compensable"}}; }

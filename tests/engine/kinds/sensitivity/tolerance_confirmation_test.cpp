@@ -10,8 +10,8 @@
 #include "tests/support/fake_model.h"
 #include "tests/support/kinds.h"
 
-/// From a sensitivity study to tolerances within a limit, and a Monte Carlo study that tries them. The fake mechanism's
-/// response is |sum of w_p e_p|, for which the prediction is exact but for sampling.
+/// Computes tolerances within a limit from a sensitivity study, and confirms them with a Monte Carlo study. The
+/// response of the fake mechanism is |sum of w_p e_p|, so the prediction is exact except for its sampling error.
 namespace poesy {
 namespace {
 
@@ -24,7 +24,8 @@ const Catalog& catalog() {
   return fake;
 }
 
-/// Varies an error with an effect and one without; another that has an effect is held in the background.
+/// A study that varies one error with an effect and one without. Another error with an effect is constant: the
+/// background (m).
 Study study_with(double background) {
   Study study;
   study.mechanism = {&catalog().front(), {test::FakeModel::kArm}, 0, {}};
@@ -39,7 +40,7 @@ Study study_with(double background) {
   return study;
 }
 
-/// The study and what it found.
+/// A sensitivity study with its result.
 struct Found {
   explicit Found(Study given)
       : study(std::move(given)),
@@ -76,7 +77,7 @@ TEST(ToleranceConfirmation, BackgroundHasNoVariedErrors) {
 }
 
 TEST(ToleranceConfirmation, MonteCarloConfirmsTheLimit) {
-  // Two-sided normal quantile for 0.001 shared by the four comparisons of this test.
+  // Two-sided normal quantile for alpha = 0.001, divided by the four comparisons of this test.
   constexpr double kZ = 3.66;
   for (const double background : {0.0, 2e-4}) {
     Found found(study_with(background));
@@ -94,8 +95,9 @@ TEST(ToleranceConfirmation, MonteCarloConfirmsTheLimit) {
       const double mean = confirmed.overall_mean(kResponse);
       const double square = mean * mean + std::pow(confirmed.overall_std(kResponse), 2);
       EXPECT_LT(mean, limit);
-      // Each pose's samples give (b + w t z)^2, of variance 2 (w t)^4 + 4 (b w t)^2; the prediction rests on as many of
-      // a uniform error, whose squares vary less.
+      // A squared response at a pose is (b + w t z)^2, with the background's effect b, the weight w, the tolerance t
+      // and a standard normal z. Its variance is 2 (w t)^4 + 4 (b w t)^2. The factor 2 below is for the prediction,
+      // which has as many samples of a uniform error, whose squares vary less.
       double variance = 0.0;
       for (std::size_t m = 0; m < kPoses; ++m) {
         const double spread2 = std::pow(found.weight(1, m) * (*chosen)[0], 2);

@@ -24,7 +24,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// The example's result with its indices replaced, row-major by response and error.
+/// Tolerance files of the example's sensitivity result. written(index) replaces its indices [responses x errors].
 class ToleranceFiles : public testing::Test {
  protected:
   StoredResult written(const std::vector<double>& index) {
@@ -35,7 +35,7 @@ class ToleranceFiles : public testing::Test {
     return read_result(path_);
   }
 
-  /// Tolerances for the first response, epsilon_1 without effect.
+  /// Tolerances for the first response. epsilon_1 has no effect, so its tolerance is infinite.
   static ResponseTolerances some(bool limit) {
     ResponseTolerances tolerances{0, {ReferenceError{1, 2e-3}, {kInfinity, 2e-3}, {0.0, 1.0}, {}}, std::nullopt};
     if (limit) tolerances.limit = LimitTolerances{1e-3, {0.25, 4e-3}, {0.25, 1e-5}};
@@ -57,13 +57,13 @@ TEST_F(ToleranceFiles, ReferenceReadsBackAsChosenByTheStudy) {
   for (const std::size_t r : {0U, 1U}) {
     const auto reference = sensitivity_of(stored).reference(r);
     ASSERT_TRUE(reference);
-    EXPECT_EQ(reference->factor, 1U);  // delta_1 is the second that the study varies
+    EXPECT_EQ(reference->factor, 1U);  // delta_1 is the second varied error of the study
     EXPECT_EQ(reference->tolerance, 3e-3);
   }
 }
 
 TEST_F(ToleranceFiles, ReferenceIsTheSmallestEffectOrTheStudysOwn) {
-  const StoredResult stored = written({1e-5, 2.0, 0.0, 0.0});  // times sigma: 2.9e-6 and 2e-3
+  const StoredResult stored = written({1e-5, 2.0, 0.0, 0.0});  // times sigma: effects of 2.9e-6 and 2e-3
   EXPECT_EQ(sensitivity_of(stored).reference(0)->factor, 0U);
   EXPECT_EQ(sensitivity_of(stored).reference(0)->tolerance, kDegree);
   EXPECT_FALSE(sensitivity_of(stored).reference(1));

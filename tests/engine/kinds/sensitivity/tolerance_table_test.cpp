@@ -54,7 +54,7 @@ TEST(ToleranceTable, OfALimitHasBothWaysToShareIt) {
   }));
 }
 
-/// Whether a note has these words.
+/// Whether a note of the table contains these words.
 bool says(const Table& table, std::string_view words) {
   return std::ranges::any_of(table.notes,
                              [&](const std::string& note) { return note.find(words) != std::string::npos; });

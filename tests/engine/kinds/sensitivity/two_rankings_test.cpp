@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// The errors of ranked_result() with these effects on its first response, in m.
+/// ranked_result() with these effects (m) of its errors on the first response.
 StoredResult with_effects(const std::vector<double>& effects) {
   StoredResult result = ranked_result();
   result.factors[3].name = "delta_d";
@@ -28,7 +28,7 @@ StoredResult with_effects(const std::vector<double>& effects) {
   return result;
 }
 
-/// 0.4, 0.1, 0 and 0 mm, as published.
+/// A result with the published metric and the effects 0.4, 0.1, 0 and 0 mm.
 StoredResult published() {
   StoredResult result = with_effects({4e-4, 1e-4, 0.0, 0.0});
   result.title = "Published";
@@ -36,7 +36,7 @@ StoredResult published() {
   return result;
 }
 
-/// 1, 2, 3 and 0 mm by the platform.
+/// A result with the platform metric and the effects 1, 2, 3 and 0 mm.
 StoredResult by_platform() {
   StoredResult result = with_effects({1e-3, 2e-3, 3e-3, 0.0});
   result.title = "By the platform";
@@ -61,7 +61,7 @@ TEST(TwoRankings, StandBesideEachOtherWithRanksAndEffects) {
             "delta_d            3           0           4              0\n");
 }
 
-/// Of the six pairs A orders five: b-epsilon, b-c, epsilon-c against B, b-d, epsilon-d as B, which orders all six.
+/// B orders all six pairs of errors. A orders five: b-epsilon, b-c and epsilon-c unlike B, b-d and epsilon-d like B.
 TEST(TwoRankings, HaveKendallsTau) {
   const StoredResult a = published();
   const StoredResult b = by_platform();
@@ -126,7 +126,7 @@ TEST(TwoRankings, AreOfTheErrorsThatBothHave) {
   b.factors[0].name = "delta_e";
   const TwoRankings rankings = two_rankings({a, "a.h5", "x", {}}, {b, "b.h5", "gap", {}});
   ASSERT_EQ(rankings.table.rows.size(), 3U);
-  EXPECT_EQ(rankings.table.rows[0][1].text, "1");  // of three, though the second of all
+  EXPECT_EQ(rankings.table.rows[0][1].text, "1");  // rank among the three common errors; it is second among all
   EXPECT_EQ(rankings.remarks[2], "Only in A: delta_b.");
   EXPECT_EQ(rankings.remarks[3], "Only in B: delta_e.");
   for (NamedUnit& factor : b.factors) factor.name += "_of_b";

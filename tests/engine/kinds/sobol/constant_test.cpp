@@ -1,5 +1,5 @@
-// What does not vary has nothing to be shared: a function whose parts move, stand still but for rounding, or move at
-// one pose alone.
+// Responses that do not vary have no Sobol' indices. The function has three responses: one varies, one is constant
+// except for rounding, and one varies at a single pose only.
 
 #include <gtest/gtest.h>
 
@@ -22,17 +22,17 @@ constexpr std::size_t kMoving = 0;
 constexpr std::size_t kStill = 1;
 constexpr std::size_t kAtOnePose = 2;
 
-/// As solves leave it: about one unit in the last place of five millimetres.
+/// A rounding error like that of a solve (m): about one unit in the last place of 5 mm.
 double noise(double x) { return 1e-18 * std::sin(1e7 * x); }
 
-/// moving = x1 + 2 x2, still = 5 mm, at_one_pose = x1 where the pose is above a half; both but for rounding.
+/// moving = x1 + 2 x2. still = 5 mm plus rounding. at_one_pose = x1 if the pose is above 0.5, else only rounding.
 void parts(std::span<const double> x, double pose, std::span<double> y) {
   y[kMoving] = x[0] + 2.0 * x[1];
   y[kStill] = 5e-3 + noise(x[0]);
   y[kAtOnePose] = pose > 0.5 ? x[0] : noise(x[1]);
 }
 
-/// The same with two vectors as details: (x1 + 2 x2, rounding), and (rounding, rounding).
+/// The function with two additional vectors as details: (x1 + 2 x2, rounding) and (rounding, rounding).
 class PartsModel final : public FunctionModel {
  public:
   PartsModel() : FunctionModel(2, {"moving", "still", "at_one_pose"}, parts), described_(FunctionModel::description()) {
@@ -106,7 +106,7 @@ TEST(SobolOfConstants, HaveNoShares) {
   EXPECT_NEAR(ST.value(kAtOnePose, 0), 1.0, 1e-12) << "the other pose adds nothing";
 }
 
-/// At the pose where it stands still nothing is shared, at the other one x1 has all.
+/// At the pose where the response is constant it has no indices; at the other pose x1 has the index 1.
 TEST(SobolOfConstants, AreJudgedPoseByPose) {
   const StudyResult result = Found(kSobolStudy).run();
   const auto& [conf_level, S1, ST] = result.as<SobolResult>().at_poses;
@@ -126,7 +126,7 @@ TEST(SobolOfConstants, VectorsAreJudgedByTheirComponents) {
       << "rounding adds no bit";
 }
 
-/// ST of what does not vary would be asked for ever more samples.
+/// Adaptive sampling must not wait for the interval of ST of a constant response, which never becomes narrower.
 TEST(SobolOfConstants, NeedNoSamples) {
   Found study(kSobolStudy, 100'000, AdaptiveSamples{1000, 0.2});
   const StudyResult result = study.run();

@@ -11,7 +11,7 @@
 namespace poesy::test {
 namespace {
 
-/// Errors x1 to x4: limbs 1, 1, 2, 2, frames 0, 1, 0, 1.
+/// The names of the groups for errors x1 to x4 of the limbs 1, 1, 2, 2 and the frames 0, 1, 0, 1.
 std::vector<std::string> groups_of(GroupsBy by, std::vector<NamedGroup> named = {}) {
   const FunctionModel model(4, {"y"}, [](std::span<const double>, double, std::span<double>) {});
   const CatalogEntry entry{model.description(), nullptr};

@@ -1,4 +1,4 @@
-// Functions whose Sobol' indices are known, as mechanisms: a study of them goes the way of every study.
+// Sobol' studies of functions whose indices are known.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 namespace poesy::test {
 namespace {
 
-/// Of one error, or of a group.
+/// The first-order and the total index of one error or one group.
 struct Indices {
   double S1;
   double ST;
@@ -74,7 +74,7 @@ void unfolded(std::span<const double> x, double, std::span<double> y) {
 
 const double kUnknown = std::nan("");
 
-/// An index that the references do not give.
+/// Placeholder for an index that the references do not give.
 constexpr double kAny = -1.0;
 
 std::vector<Reference> references() {
@@ -136,7 +136,7 @@ std::vector<Reference> references() {
           {"Unfolded", normal, unfolded, 1.0, {{0.8, 0.8}, {0.2, 0.2}}}};
 }
 
-/// A study of one function at one place, or at several.
+/// Runs a study of a function. places: the poses.
 SobolResult run(const Study& study, const FunctionModel& model, std::vector<double> places = {0.5},
                 std::size_t threads = 2) {
   const auto result = run_study(study, model, PoseSet(1, std::move(places)), {.threads = threads});
@@ -164,7 +164,7 @@ std::string case_name(const ::testing::TestParamInfo<Case>& info) {
   return info.param.reference.name + by;
 }
 
-// Some 300 intervals at a level of 1 - 1e-5 each: alpha is below 0.3 % for all of them together.
+// About 300 intervals with a level of 1 - 1e-5 each, so alpha is below 0.3 % for all of them together.
 TEST_P(Of, AreWithinTheirIntervals) {
   const auto& [reference, design] = GetParam();
   const FunctionModel model(reference.indices.size(), {"y"}, reference.function);
@@ -199,7 +199,7 @@ TEST(SobolPanel, AbsorbedErrorsAreZeroInEveryBit) {
   EXPECT_GT(found.at_poses.ST.value(0, 0, 0), 0.1);
 }
 
-/// Three responses that are a vector, linear in the errors, larger at larger places.
+/// A vector of three responses that is linear in the errors and grows with `place`.
 void linear_vector(std::span<const double> x, double place, std::span<double> y) {
   y[0] = (1.0 + place) * (2.0 * x[0] + 1.0 * x[1]);
   y[1] = 0.5 * x[0] - 3.0 * x[2];
@@ -212,7 +212,7 @@ TEST(SobolPanel, LinearVectorsHaveMeanSquareShares) {
   Study study = function_study(entry, kSobolStudy, Distribution::normal(0.1), 20000);
   study.analysis.conf_level = 1.0 - 1e-4;
   const SobolResult found = run(study, model, {0.0, 1.0});
-  // Over both places: the sums of the squared coefficients.
+  // The sums of the squared coefficients over both places.
   const double squares[] = {4.0 + 16.0 + 2.0 * 0.25, 1.0 + 4.0 + 1.0, 2.0 * 9.0};
   const double all = squares[0] + squares[1] + squares[2];
   ASSERT_EQ(found.vectors, std::vector<std::string>{"tip"});
@@ -233,7 +233,7 @@ TEST(SobolPanel, LinearVectorsHaveMeanSquareShares) {
 }
 
 TEST(SobolPanel, AggregatesPosesByTheirVariances) {
-  // V is 1 at place 0, all by x1; and 4 at place 1, all by x2.
+  // The variance is 1 at place 0, all from x1, and 4 at place 1, all from x2.
   const auto function = [](std::span<const double> x, double place, std::span<double> y) {
     y[0] = place == 0.0 ? x[0] : 2.0 * x[1];
   };
@@ -329,7 +329,7 @@ TEST_P(KnownShapley, IsWithinItsInterval) {
   const SobolResult found = run(study, model);
   expect_shapley(found, {0.10416667, 0.41822917, 0.47760417});
   EXPECT_NEAR(found.variance(0, 0), 9.6, 0.3);
-  // The first error is independent of the others: its indices are known too. Those of the others have no meaning.
+  // The first error is independent of the others, so its S1 and ST are known too. Correlated errors have no S1 and ST.
   EXPECT_LE(found.aggregated.S1.ci_low(0, 0), 1.0 / 9.6);
   EXPECT_GE(found.aggregated.S1.ci_high(0, 0), 1.0 / 9.6);
   EXPECT_LE(found.aggregated.ST.ci_low(0, 0), 1.0 / 9.6);
@@ -344,8 +344,8 @@ TEST_P(KnownShapley, IsWithinItsInterval) {
 INSTANTIATE_TEST_SUITE_P(Designs, KnownShapley, ::testing::Values(Design::random, Design::lhs, Design::sobol),
                          [](const auto& of) { return std::string(name(of.param)); });
 
-// Of independent errors the effect is S1 with an even part of each interaction: of Ishigami's first and third half of
-// theirs.
+// For independent errors the Shapley effect is S1 plus an equal part of each interaction. The first and the third error
+// of the Ishigami function each get half of their interaction.
 TEST(SobolPanel, ShapleyEffectsDivideInteractionsEvenly) {
   const FunctionModel model(4, {"y"}, ishigami);
   const CatalogEntry entry{model.description(), nullptr};
@@ -377,7 +377,7 @@ TEST(SobolPanel, GroupsThatHoldCorrelatedErrorsHaveIndices) {
   for (const auto* ends : {&found.aggregated.S1.ci_high, &found.aggregated.ST.ci_high}) EXPECT_GT((*ends)(0, 0), two);
 }
 
-// Both errors have the same distribution and the same part in the product, so each has one half.
+// The product is symmetric in both errors, which have the same distribution, so each effect is one half.
 TEST(SobolPanel, ShapleyEffectsOfTwoThatAreAlikeAreEqual) {
   const auto product = [](std::span<const double> x, double, std::span<double> y) { y[0] = x[0] * x[1]; };
   const FunctionModel model(2, {"y"}, product);

@@ -15,7 +15,7 @@
 #include "tests/engine/stats/coverage.h"
 #include "tests/support/function_model.h"
 
-// Functions of correlated errors whose Shapley effects are known, and how often 95 % intervals have these effects.
+// Functions of correlated errors with known Shapley effects, and the coverage of the 95 % intervals of these effects.
 
 namespace poesy::test {
 
@@ -23,7 +23,7 @@ namespace poesy::test {
 inline void sum_of_three(std::span<const double> x, double, std::span<double> y) { y[0] = x[0] + x[1] + x[2]; }
 
 /// A study of three normal errors with standard deviations 1, 1 and 2, of which the last two are correlated by 0.9.
-/// entry: of a function of three errors; must outlive the study.
+/// entry: of a function with three errors; it must outlive the study.
 inline Study correlated_study(const CatalogEntry& entry, std::size_t samples) {
   Study study = function_study(entry, kSobolStudy, Distribution::normal(1.0), samples);
   study.errors.by_factor[2] = Distribution::normal(2.0);
@@ -31,15 +31,16 @@ inline Study correlated_study(const CatalogEntry& entry, std::size_t samples) {
   return study;
 }
 
-/// A function of z, the sum of these three errors over its standard deviation.
+/// A function of z, the sum of the three errors of correlated_study() divided by its standard deviation.
 struct ShapleyFunction {
-  std::string name;                         ///< for people
-  std::function<double(double)> value;      ///< y of z
-  std::function<double(double)> explained;  ///< Var(E[y | S]) up to a factor, for an S that explains this share of z
+  std::string name;                         ///< for messages
+  std::function<double(double)> value;      ///< the response y as a function of z
+  std::function<double(double)> explained;  ///< Var(E[y | S]), up to a factor, if S explains this share of Var(z)
 
-  /// As of Owen 2014, from the parts of the sum's variance 9.6 that subsets S of the errors explain.
+  /// The Shapley effects by the definition of Owen 2014. kParts: the part of the sum's variance, 9.6, that each subset
+  /// S of the errors explains.
   std::array<double, 3> effects() const {
-    constexpr std::array kParts{0.0, 1.0, 7.84, 8.84, 8.41, 9.41, 8.6, 9.6};  // bit p of the place: x_p is in S
+    constexpr std::array kParts{0.0, 1.0, 7.84, 8.84, 8.41, 9.41, 8.6, 9.6};  // bit p of the index: x_p is in S
     const auto worth = [&](std::size_t subset) { return explained(kParts[subset] / 9.6) / explained(1.0); };
     std::array<double, 3> effects{};
     for (std::size_t p = 0; p < 3; ++p) {
@@ -53,16 +54,17 @@ struct ShapleyFunction {
   }
 };
 
-/// z itself, its magnitude and exp(z / 2).
+/// The functions z, |z| and exp(z / 2).
 inline std::vector<ShapleyFunction> shapley_functions() {
-  // E[|u| |w|] of two normals with correlation r is 2 / pi (sqrt(1 - r^2) + r asin r).
+  // Two standard normals u and w with the correlation r have E[|u| |w|] = 2 / pi (sqrt(1 - r^2) + r asin r).
   const auto folded = [](double r) { return std::sqrt(1.0 - r * r) + r * std::asin(r) - 1.0; };
   return {{"linear", [](double z) { return z; }, [](double share) { return share; }},
           {"folded", [](double z) { return std::abs(z); }, folded},
           {"exp(z / 2)", [](double z) { return std::exp(0.5 * z); }, [](double r) { return std::expm1(0.25 * r); }}};
 }
 
-/// The intervals of the three effects, with seeds from `seed` on.
+/// The coverage of the intervals of the three effects, over `repetitions` studies with the seeds `seed`, `seed` + 1,
+/// ...
 inline std::array<Coverage, 3> shapley_coverage(const ShapleyFunction& function, std::size_t samples, int repetitions,
                                                 std::uint64_t seed) {
   const FunctionModel model(3, {"y"}, [&](std::span<const double> x, double place, std::span<double> y) {

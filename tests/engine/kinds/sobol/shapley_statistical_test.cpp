@@ -1,4 +1,4 @@
-// How often the intervals of Shapley effects have the effect, by simulation.
+// Coverage of the intervals of Shapley effects, by simulation.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,8 @@ namespace {
 
 class ShapleyIntervals : public ::testing::TestWithParam<std::size_t> {};
 
-// 1.5 points off the level are allowed, and 3.3 standard errors of what is measured: alpha is 0.1 % for each of nine.
+// The coverage may differ from 95 % by 1.5 percentage points plus 3.3 standard errors of the simulation (alpha = 0.1 %
+// for each of nine intervals).
 TEST_P(ShapleyIntervals, HoldTheEffectAsTheySay) {
   constexpr int kRepetitions = 1000;
   const double allowed = 0.015 + 3.3 * std::sqrt(0.95 * 0.05 / kRepetitions);
@@ -33,7 +34,7 @@ TEST(ShapleyFunctions, HaveTheEffectsOfTheReference) {
   EXPECT_NEAR(linear[0], 0.10416667, 5e-9);
   EXPECT_NEAR(linear[1], 0.41822917, 5e-9);
   EXPECT_NEAR(linear[2], 0.47760417, 5e-9);
-  // |sqrt(0.8) z1 + sqrt(0.2) z2|: an error that explains 0.8 of the sum, and one that explains 0.2.
+  // y = |sqrt(0.8) z1 + sqrt(0.2) z2|: z1 explains 0.8 of the variance of the sum, and z2 explains 0.2.
   EXPECT_NEAR(functions[1].explained(0.8) / functions[1].explained(1.0), 0.59887592, 5e-9);
   EXPECT_NEAR(functions[1].explained(0.2) / functions[1].explained(1.0), 0.03515699, 5e-9);
   for (const ShapleyFunction& function : functions) {
