@@ -77,6 +77,11 @@ double largest(std::span<const double> values) {
 
 }  // namespace
 
+bool has_zone_shape(const StoredResult& result) {
+  return result.drawing && result.study_text.find("\nzones = {") != std::string::npos &&
+         result.study_text.find("\nzones = { distribution = \"normal\"") == std::string::npos;
+}
+
 std::vector<std::string> feature_of_each_error(const StoredResult& result) {
   std::vector<std::string> sources = names_of(result.factors);
   if (!result.drawing) return sources;

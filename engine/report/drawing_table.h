@@ -15,6 +15,10 @@ namespace poesy {
 /// signed nor the norm of signed responses.
 std::optional<Table> drawing_table(const StoredResult& result, std::size_t response);
 
+/// Returns true if errors of a feature are drawn together, because the study's errors.zones has a distribution other
+/// than normal. They then have no first-order index.
+bool has_zone_shape(const StoredResult& result);
+
 /// For each error, the name of the feature to which it belongs, or its own name if it belongs to none.
 std::vector<std::string> feature_of_each_error(const StoredResult& result);
 

@@ -182,15 +182,22 @@ bool goes_with(const Table& table, std::size_t other, std::size_t left_out) {
   return value_of(table, other) == value_of(table, left_out);
 }
 
-/// Returns true for a column of units if no number to its left needs it: a number without a unit in its heading, or
-/// with a unit such as "mm/unit".
+/// Returns true for a number that has its unit in a column of units: one without a unit in its heading, or with a unit
+/// such as "mm/unit".
+bool needs_unit(const Column& column) {
+  const bool has_own = !column.unit.empty() && column.unit.find("unit") == std::string::npos;
+  return column.kind == Column::Kind::number && !has_own && !is_interval(column);
+}
+
+/// Returns true for a column of units whose numbers have all been left out. They are to its left, up to the column of
+/// units before, or to its right, up to the next one.
 bool is_orphan_unit(const Table& table, std::size_t c) {
-  if (heading_of(table.columns[c]) != "unit") return false;
-  return std::ranges::none_of(
-      table.columns.begin(), table.columns.begin() + static_cast<std::ptrdiff_t>(c), [](const Column& column) {
-        const bool has_own = !column.unit.empty() && column.unit.find("unit") == std::string::npos;
-        return column.kind == Column::Kind::number && !has_own;
-      });
+  const auto is_unit = [](const Column& column) { return heading_of(column) == "unit"; };
+  if (!is_unit(table.columns[c])) return false;
+  const auto here = table.columns.begin() + static_cast<std::ptrdiff_t>(c);
+  const auto first = std::find_if(std::make_reverse_iterator(here), table.columns.rend(), is_unit).base();
+  const auto last = std::find_if(here + 1, table.columns.end(), is_unit);
+  return std::none_of(first, here, needs_unit) && std::none_of(here + 1, last, needs_unit);
 }
 
 Table without_orphan_units(const Table& table) {

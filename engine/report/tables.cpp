@@ -359,6 +359,13 @@ std::optional<Table> stated_table(const StoredResult& result) {
               .caption = "Errors with a mean, or that a machine draws anew at each pose",
               .columns = {},
               .notes = {"sigma: of the scatter about the mean; drawn: in a study of machines"}};
+  const bool has_pins =
+      result.drawing && std::ranges::find(result.drawing->location, "clearance") != result.drawing->location.end();
+  if (has_pins && has_zone_shape(result)) {
+    table.notes.emplace_back(
+        "the errors of a clearance are drawn together, so that the pin stays in its bore; one of them alone is not "
+        "normal");
+  }
   const auto value = [&](double si, std::size_t p) { return value_cell(si, result.factors[p], kDigits); };
   fill(table, stated,
        {name_column(result.factors, "error"),

@@ -84,6 +84,12 @@ std::string_view bare_word(std::string_view line, std::string_view rest) {
   return begins && ends ? word : std::string_view();
 }
 
+/// Returns true for the words that are values of TOML without quotes.
+bool is_value(std::string_view word) {
+  constexpr std::array<std::string_view, 4> kValues{"true", "false", "inf", "nan"};
+  return std::ranges::find(kValues, word) != kValues.end();
+}
+
 /// Throws InputError if the place where the TOML library noticed a mistake has a quote of a word processor, or is in a
 /// text without quotes.
 void refuse_missing_quotes(const std::vector<std::string_view>& lines, const std::string& path,
@@ -99,7 +105,7 @@ void refuse_missing_quotes(const std::vector<std::string_view>& lines, const std
                      "write the plain quote \" before and after a text");
   }
   const std::string_view word = bare_word(lines[noticed.line - 1], rest);
-  if (word.empty()) return;
+  if (word.empty() || is_value(word)) return;
   const std::string lower = lower_case(word);
   const bool is_boolean = lower == "true" || lower == "false";
   throw InputError(place, fmt::format("this is not TOML: {} is a text without quotes", printable(word)),

@@ -123,7 +123,7 @@ std::vector<std::string> workspace_doubts(const Study& study, const PoseSet& pos
 
 std::vector<std::string> size_doubts(const Study& study, const Model& model) {
   const StudyKind& kind = *study.analysis.kind;
-  if (kind.varies == Varies::none || kind.draws_machines_anew) return {};
+  if (kind.varies == Varies::none || kind.finds_sizes) return {};
   std::vector<std::string> list;
   for (const auto& [dimension, share] : {std::pair(Dimension::length, 1.0 / 10.0), {Dimension::angle, 1.0 / 18.0}}) {
     for (const FactorIndex error : study.analysis.factors) {

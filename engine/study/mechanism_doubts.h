@@ -27,8 +27,8 @@ std::vector<std::string> workspace_doubts(const Study& study, const PoseSet& pos
 
 /// Questions about the standard deviations of drawn errors, at most one for lengths and one for angles. It names the
 /// first error whose standard deviation is more than a tenth of Model::error_bound() or, for an angle, more than an
-/// eighteenth (10 deg of half a turn). There are none if the kind of study has StudyKind::draws_machines_anew. model:
-/// the mechanism of the study.
+/// eighteenth (10 deg of half a turn). There are none if the kind of study has StudyKind::finds_sizes. model: the
+/// mechanism of the study.
 std::vector<std::string> size_doubts(const Study& study, const Model& model);
 
 /// A warning if the study corrects the drives at each pose (`calibrated = true`), but limits the displacement of a

@@ -80,6 +80,7 @@ struct StudyKind {
   Draws draws = Draws::per_pose;           ///< when errors are drawn if the study does not state it
   /// True if the kind draws several sets of machines, so that a study cannot give the machines.
   bool draws_machines_anew = false;
+  bool finds_sizes = false;  ///< true if the study finds the sizes of errors itself
   /// True if a sample has the same errors at all poses for any value of `draws`, so responses may be relative to the
   /// previous pose.
   bool has_pose_before = false;

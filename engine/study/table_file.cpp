@@ -61,16 +61,17 @@ struct TableColumn {
 };
 
 [[noreturn]] void refuse_unknown(const Place& place, std::string_view name, const KnownColumns& known) {
-  if (parse_number(name)) {
+  if (parse_number(name) && !known.numbers.empty()) {
     throw InputError(place, fmt::format("'{}' is a number where the name of a column must be", printable(name)),
                      fmt::format("name the columns in the first line, each with its unit: {} [{}]",
                                  known.numbers.front().name, display_unit(known.numbers.front().dimension).name));
   }
   std::string advice = suggestion(name, names(known.numbers));
   const std::size_t end = std::min(name.rfind('_'), name.size());
-  const bool has_unit = end < name.size() && find_unit(name.substr(end + 1)) != nullptr;
-  if (has_unit && contains(names(known.numbers), name.substr(0, end))) {
-    advice = fmt::format("write its unit in brackets: {} [{}]", name.substr(0, end), name.substr(end + 1));
+  const auto column = std::ranges::find(known.numbers, name.substr(0, end), &KnownColumn::name);
+  const Unit* const unit = end < name.size() ? find_unit(name.substr(end + 1)) : nullptr;
+  if (unit != nullptr && column != known.numbers.end() && unit->dimension == column->dimension) {
+    advice = fmt::format("write its unit in brackets: {} [{}]", column->name, unit->name);
   }
   if (!known.labels.empty()) advice += "; or delete it, or call it 'part' if it names the rows";
   throw InputError(place, fmt::format("column '{}' is not a {} of the model", printable(name), known.what), advice);

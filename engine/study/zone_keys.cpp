@@ -182,6 +182,12 @@ bool varies_by_zone(const Study& study, const std::vector<std::optional<Distribu
          std::ranges::find(varied, error) != varied.end();
 }
 
+bool is_correlated(const Study& study, FactorIndex error) {
+  return std::ranges::any_of(study.errors.correlated, [&](const CorrelatedErrors& block) {
+    return std::ranges::find(block.factors, error) != block.factors.end();
+  });
+}
+
 /// Throws InputError if the errors of a feature that are drawn together do not all vary with distributions from their
 /// zone, are drawn partly per pose and partly per machine, or are correlated.
 void check_feature(const StudyValue& zones, const Feature& feature, const Study& study,
@@ -207,11 +213,9 @@ void check_feature(const StudyValue& zones, const Feature& feature, const Study&
                       shape, feature.name),
           "give all of them the same draws");
     }
-    for (const CorrelatedErrors& block : study.errors.correlated) {
-      if (std::ranges::find(block.factors, error) == block.factors.end()) continue;
-      zones.fail(fmt::format("has distribution = \"{}\", but errors.correlated has '{}'", shape, name_of(error)),
-                 "write distribution = \"normal\", or leave the errors of features out of errors.correlated");
-    }
+    if (!is_correlated(study, error)) continue;
+    zones.fail(fmt::format("has distribution = \"{}\", but errors.correlated has '{}'", shape, name_of(error)),
+               "write distribution = \"normal\", or leave the errors of features out of errors.correlated");
   }
 }
 
@@ -277,9 +281,11 @@ std::vector<Feature> features_drawn_together(const Study& study) {
   for (const Feature& feature : study.model().features) {
     if (!drawing::are_drawn_together(feature, *study.errors.zones)) continue;
     const std::vector<FactorIndex> errors = feature.errors();
-    if (std::ranges::all_of(errors, [&](FactorIndex error) { return varies_by_zone(study, by_zones, error); })) {
-      list.push_back(feature);
-    }
+    const auto is_own = [&](FactorIndex error) {
+      return varies_by_zone(study, by_zones, error) && !is_correlated(study, error) &&
+             study.errors.is_per_pose(error) == study.errors.is_per_pose(errors.front());
+    };
+    if (std::ranges::all_of(errors, is_own)) list.push_back(feature);
   }
   return list;
 }
@@ -290,7 +296,8 @@ void check_zones(const Study& study, const Reading& reading) {
   const StudyValue zones = reading.root.section("errors").require("zones");
   const std::vector<std::optional<Distribution>> by_zones = distributions_by_zones(study);
   for (const Feature& feature : study.model().features) {
-    if (drawing::are_drawn_together(feature, *study.errors.zones)) check_feature(zones, feature, study, by_zones);
+    if (feature.clearance || !drawing::are_drawn_together(feature, *study.errors.zones)) continue;
+    check_feature(zones, feature, study, by_zones);
   }
 }
 

@@ -175,7 +175,10 @@ class FeatureBuilder {
   /// after the last joint. None for a part of the base, and if one of the two joints slides, because the
   /// point of a sliding joint does not show where its part ends.
   std::optional<Vector3> other_end(PartSide side, const Limb& limb, std::size_t joint) const {
-    const auto slides = [&](std::size_t j) { return limb.joints[j].motion == Motion::prismatic; };
+    const auto slides = [&](std::size_t j) {
+      const JointKind kind = limb.joints[j].kind;
+      return kind == JointKind::prismatic || kind == JointKind::helical || kind == JointKind::cylindrical;
+    };
     const bool is_after = side == PartSide::after;
     if (slides(joint) || (!is_after && joint == 0)) return {};
     if (is_after && joint + 1 == limb.joints.size()) return mechanism_.bodies[limb.to].home.p;

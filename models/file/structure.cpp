@@ -204,33 +204,57 @@ std::vector<std::string> home_outside(const Mechanism& mechanism) {
   return list;
 }
 
-/// The angle (rad, at most a quarter turn) between the axis of joint j of the limb and the line to the nearest of
-/// `others` whose point is not that of joint j. The joint's name is added; none if there is no such joint.
-static std::optional<std::pair<double, std::string>> angle_to_leg(const Joint& joint, auto&& others) {
-  constexpr double kOnePoint = 1e-9;  // m
-  for (const Joint& other : others) {
-    const Vector3 line = other.at_home.p - joint.at_home.p;
-    if (line.norm() <= kOnePoint) continue;
-    const Vector3 axis = joint.at_home.R.col(2);
-    return std::pair(std::atan2(axis.cross(line).norm(), std::abs(axis.dot(line))), other.name);
+/// Returns true if the points of two joints are one point, up to the rounding of numbers in files.
+static bool are_at_one_point(const Joint& a, const Joint& b, double reach) {
+  constexpr double kRounding = 1e-6;  // share of the reach
+  return (a.at_home.p - b.at_home.p).norm() <= kRounding * reach;
+}
+
+/// The first of these joints that turns, if it is a universal or spherical joint, which is the end of a leg; otherwise
+/// none. Joints that slide are left out, because their points need not be ends of anything.
+static const Joint* end_of_leg(auto&& joints) {
+  for (const Joint& joint : joints) {
+    if (joint.kind == JointKind::universal || joint.kind == JointKind::spherical) return &joint;
+    if (joint.kind == JointKind::revolute) return nullptr;
   }
-  return {};
+  return nullptr;
+}
+
+/// Returns true if another joint of the limb turns at the point of this universal joint. Both together may be a
+/// spherical joint, in which any axis may lie along a leg.
+static bool is_part_of_sphere(const Joint& universal, const Limb& limb, double reach) {
+  return std::ranges::any_of(limb.joints, [&](const Joint& other) {
+    return other.motion == Motion::revolute && other.name != universal.name &&
+           are_at_one_point(other, universal, reach);
+  });
+}
+
+/// The clause of axes_along_legs() about the axis `key` of a joint of this limb; empty if no leg leads to `end`, or if
+/// the axis lies across it.
+static std::string along_leg_text(std::string_view key, const Joint& joint, const Joint* end, const Limb& limb) {
+  constexpr double kAlong = 20.0;  // deg
+  if (end == nullptr) return {};
+  const Vector3 axis = joint.at_home.R.col(2);
+  const Vector3 line = end->at_home.p - joint.at_home.p;
+  const double angle = std::atan2(axis.cross(line).norm(), std::abs(axis.dot(line))) * 180.0 / std::numbers::pi;
+  if (angle >= kAlong) return {};
+  return fmt::format(
+      "{} of joint {} of limb {} is at {:.3g} deg to the line to joint {}, so the leg can swing about the "
+      "other axis only (the axis on the leg's side usually lies across the leg)",
+      key, joint.name, limb.label, angle, end->name);
 }
 
 std::vector<std::string> axes_along_legs(const Mechanism& mechanism) {
-  constexpr double kAlong = 20.0;  // deg
   for (const Limb& limb : mechanism.limbs) {
     const std::span<const Joint> joints = limb.joints;
     for (std::size_t j = 0; j + 1 < joints.size(); ++j) {
       if (joints[j].kind != JointKind::universal || joints[j + 1].name != joints[j].name) continue;
-      const auto before = angle_to_leg(joints[j], joints.first(j) | std::views::reverse);
-      const auto after = angle_to_leg(joints[j + 1], joints.subspan(j + 2));
-      for (const auto& [key, found] : {std::pair("axis", before), {"axis2", after}}) {
-        if (!found || found->first * 180.0 / std::numbers::pi >= kAlong) continue;
-        return {
-            fmt::format("{} of joint {} of limb {} is at {:.3g} deg to the line to joint {}, so the leg can swing "
-                        "about the other axis only (the axis on the leg's side usually lies across the leg)",
-                        key, joints[j].name, limb.label, found->first * 180.0 / std::numbers::pi, found->second)};
+      if (is_part_of_sphere(joints[j], limb, mechanism.reach)) continue;
+      const Joint* const before = end_of_leg(joints.first(j) | std::views::reverse);
+      const Joint* const after = end_of_leg(joints.subspan(j + 2));
+      for (const std::string& text :
+           {along_leg_text("axis", joints[j], before, limb), along_leg_text("axis2", joints[j + 1], after, limb)}) {
+        if (!text.empty()) return {text};
       }
     }
   }

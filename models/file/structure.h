@@ -34,7 +34,7 @@ Sketch sketch_of(const Mechanism& mechanism);
 std::vector<std::string> home_outside(const Mechanism& mechanism);
 
 /// A clause about a universal joint whose axis on the leg's side lies nearly along the line to the leg's next point, at
-/// home: such a joint lets the leg swing about one axis only. At most one clause, because the
+/// home. The leg leads to another universal or to a spherical joint. Such a joint lets the leg swing about one axis only. At most one clause, because the
 /// copies of a limb share it.
 std::vector<std::string> axes_along_legs(const Mechanism& mechanism);
 

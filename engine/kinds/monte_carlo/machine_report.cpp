@@ -12,6 +12,7 @@
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/kinds/monte_carlo/yield.h"
 #include "engine/report/display.h"
+#include "engine/report/drawing_table.h"
 #include "engine/stats/first_order.h"
 #include "engine/stats/main_effects.h"
 
@@ -85,13 +86,6 @@ Table rejects_table(const StoredResult& result) {
 /// Whether some errors are correlated and therefore have no index.
 bool has_correlated(const StoredResult& result) {
   return result.study_text.find("\n[[errors.correlated]]\n") != std::string::npos;
-}
-
-/// Whether some errors are drawn together with the other errors of their feature from its tolerance zone, and therefore
-/// have no index.
-bool has_zone_shape(const StoredResult& result) {
-  return result.drawing && result.study_text.find("\nzones = {") != std::string::npos &&
-         result.study_text.find("\nzones = { distribution = \"normal\"") == std::string::npos;
 }
 
 /// Whether too few samples of the response count at a pose over which indices are summed.

@@ -85,6 +85,13 @@ TEST(LatexColumns, AUnitGoesWithTheLastNumberThatNeedsIt) {
   EXPECT_EQ(names(fitted(table, 35.0)), (Names{"error", "effect"}));
 }
 
+TEST(LatexColumns, AUnitBeforeItsNumbersStays) {
+  const Table table = table_of({text_column("response", "response"), text_column("unit", "unit"),
+                                number_column("mean", "mean"), number_column("std", "standard deviation"),
+                                number_column("rms", "rms"), number_column("max", "largest of all")});
+  EXPECT_EQ(names(fitted(table, 60.0)), (std::vector<std::string>{"response", "unit", "mean", "std"}));
+}
+
 TEST(LatexColumns, IntervalsHaveTheUnitOfTheirValueIfThereIsLittleRoom) {
   Table table = table_of({text_column("error", "error"), number_column("index", "index", "mm/unit"),
                           number_column("low", "low", "mm/unit"), number_column("high", "high", "mm/unit")});

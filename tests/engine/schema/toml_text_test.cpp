@@ -83,6 +83,12 @@ TEST(ParseToml, NamesMissingAndTypographicQuotes) {
   EXPECT_NE(test::refusal_of([] { parsed("a = True"); }).find("write true"), std::string::npos);
 }
 
+TEST(ParseToml, KeepsOtherReasonsBesideValues) {
+  for (const std::string value : {"true", "false", "nan", "-inf"}) {
+    EXPECT_NE(test::refusal_of([&] { parsed("a = " + value + "\na = " + value); }).find("redefine"), std::string::npos);
+  }
+}
+
 TEST(ParseToml, KeepsOtherReasonsBesideTypographicQuotes) {
   for (const std::string text : {"a = \"\u201cb\u201d\" 3", "a = 3,5 # \u201cb\u201d"}) {
     EXPECT_EQ(test::refusal_of([&] { parsed(text); }).find("typographic"), std::string::npos) << text;

@@ -237,7 +237,7 @@ TEST(Features, AreRefusedWithPlaceAndRemedy) {
           {"kind = \"axis\", length = \"500 mm\", at", "kind = \"axis\", at",
            "m.toml:19:3: key 'length' is missing in [limb[0].features[1]]; write length = \"30 mm\""},
           {"joint = \"q\", kind", "joint = \"Q\", kind",
-           "m.toml:19:28: limb[0].features[1].joint 'Q' is not a joint of this limb; known: O, q, B, C"},
+           "m.toml:19:28: limb[0].features[1].joint 'Q' is not a joint of this limb; did you mean 'q'?"},
           {"joint = \"q\", kind", "kind",
            "m.toml:19:3: key 'joint' is missing in [limb[0].features[1]]; write joint = \"A\""},
           {"joint = \"B\", axis = 2", "joint = \"B\", axis = 3",

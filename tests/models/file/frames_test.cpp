@@ -49,6 +49,28 @@ TEST(Frames, OfUniversalJointsLieAcrossTheLeg) {
   }
 }
 
+/// Sound limbs in which an axis of a universal joint lies along the line to another joint.
+TEST(Frames, OfUniversalJointsMayLieAlongOtherLines) {
+  const std::string ball = R"({ name = "C", type = "S", at = ["200 mm", 0, "500 mm"] })";
+  const std::string rod = R"({ name = "B", type = "U", at = ["400 mm", 0, 0], axis = "x", axis2 = "y" }, )" + ball;
+  const std::string leg = R"(axis = "y", axis2 = [-2, 0, 5] }, )" + ball;
+  for (
+      const std::string& joints :
+      {R"({ name = "q", type = "P", at = ["300 mm", 0, 0], axis = "x", actuated = true }, )" + rod,
+       R"({ name = "q", type = "R", at = ["300 mm", 0, 0], axis = "y", actuated = true }, )" + rod,
+       R"({ name = "A", type = "R", at = ["400 mm", 0, 0], axis = "x" }, { name = "B", type = "U", at = ["400 mm", 0, 0], )" +
+           leg}) {
+    const MechanismFile file = read_mechanism_file(
+        "format = \"poesy-mechanism\"\nversion = 1\nname = \"m\"\ntitle = \"m\"\n[platform]\norigin = [0, 0, \"500 "
+        "mm\"]\n"
+        "coordinates = [\"x\"]\nworkspace = { x = [\"-1 mm\", \"1 mm\"] }\n[[limb]]\n"
+        "copies = { count = 3, about = \"z\" }\njoints = [ " +
+            joints + " ]\n",
+        "m.toml");
+    EXPECT_TRUE(axes_along_legs(mechanism(file, default_geometry(file))).empty()) << joints;
+  }
+}
+
 /// The x axis of a joint points to the next joint, projected perpendicular to z. If both points coincide, x is along a
 /// base axis.
 TEST(Frames, FollowThePrintedRule) {
