@@ -11,8 +11,10 @@ namespace {
 using Eigen::Index;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-constexpr double kStepOfValue = 1e-5;  // m or rad: largest change of a displacement in a step for finite differences
-// m, rad or a slope: step of each number of phi (see Derivatives) for finite differences
+// Steps for finite differences. The step of a fitted number is chosen so that no displacement of the platform changes
+// by more than kStepOfValue (m, rad).
+constexpr double kStepOfValue = 1e-5;
+// The step of each number that describes the place of the measuring device or of the target (m, rad or a slope).
 constexpr double kStepOfPlace = 1e-5;
 
 Vector6 numbers_of(const Displacement& displacement) {

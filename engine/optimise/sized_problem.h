@@ -40,11 +40,11 @@ struct SizedProcess {
   std::size_t index;  ///< position of the process in the list of its part in AllocationProblem::parts
   std::optional<InnerProcess> inner = {};  ///< process of the pair's inner part; none if the part is in no pair
 
-  /// Returns true if the process allows only one size, for each of its parts.
+  /// Returns true if the process allows only one size, and so does the process of the inner part, if there is one.
   bool single() const { return lo == hi && (!inner || inner->left_out || inner->lo == inner->hi); }
-  double fixed_cost() const;  ///< The part of the cost that does not depend on sizes.
-  /// The least share of a limit's room that sizes of this process use. effects: effects on this limit, divided by its
-  /// room.
+  double fixed_cost() const;  ///< The cost that does not depend on sizes.
+  /// The least share of a limit's room (the largest sum of effects that keeps the limit) that sizes of this process
+  /// use. effects: effects on this limit, divided by its room.
   double least_use(const Effects& effects) const;
 };
 

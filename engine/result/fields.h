@@ -436,7 +436,7 @@ void write_group(ResultBuilder& result, const Group<Found>& group, const Found& 
   }
 }
 
-/// Adds to the result file a group with all its datasets, and keeps the members of `found`.
+/// Adds to the result file a group with all its datasets. Unlike the function below, it does not change `found`.
 template <class Found>
 void write_group(ResultBuilder& result, const Group<Found>& group, const Found& found) {
   write_group(result, group, found, [](const FieldRow<Found>&) {});

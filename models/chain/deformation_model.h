@@ -64,7 +64,7 @@ std::vector<Response> responses_of(const DeformationModel& model);
 DeformationMeasure deformation_measure(const DeformationModel& model);
 
 /// The largest standard deviation of a response (rad, m) that may be rounding instead of an effect: 4 eps x max(1,
-/// reach in m). Errors that deform nothing give at most a sixteenth of this level, whatever their size.
+/// reach in m). In tests, errors that deform nothing gave at most a sixteenth of this level at any size that was tried.
 double effect_rounding(const DeformationModel& model);
 
 /// An additional output (Detail) for each pair of limbs: the mismatch delta_mu_ki = [omega; v] (Du et al. 2022, Eqs.

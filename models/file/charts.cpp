@@ -14,8 +14,9 @@ namespace {
 /// Displacements count as equal if they differ by less than this (rad, or shares of the reach). Tracking is accurate to
 /// a millionth of this.
 constexpr double kSame = 1e-6;
-/// The tolerance kSame for a mechanism with rounded numbers, in units of Precision::closed. It is larger than kSame,
-/// because with rounded numbers limbs share a mismatch, and the shares depend on which joints are given.
+/// The tolerance that replaces kSame for a mechanism with rounded numbers, as a multiple of Precision::closed. It must
+/// be larger: the limbs of such a mechanism do not quite fit, and how the mismatch is divided among their joints
+/// depends on whether the pose or the displacements of the drives are given.
 constexpr double kSameOfRounded = 100.0;
 
 /// The mechanism with another frame of its platform.

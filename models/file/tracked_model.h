@@ -34,10 +34,10 @@ class TrackedModel : public Model {
   ErrorBound error_bound(FactorIndex factor) const override;
 
  protected:
-  /// Completes the description, except for responses and the data that follow from them.
+  /// Fills in the description, except for responses and the data that follow from them.
   TrackedModel(const MechanismFile& file, Checked found);
 
-  /// Sets the responses, and those that summaries show. deforms: true if the response `gap` may be among those that
+  /// Sets the responses, and which of them summaries show. deforms: true if the response `gap` may be among those that
   /// summaries show.
   void set_responses(std::vector<Response> responses, bool deforms = true);
 

@@ -107,9 +107,10 @@ class LoadSolver : protected UnitSolver {
     return outcomes;
   }
 
-  /// Raises the loads [machines] to those under limits that are judged from several poses together, if these loads are
-  /// larger, and sets `beyond` [limits x machines] as add_pose() does. The loads of machines that are not solved at
-  /// some pose are meaningless.
+  /// Takes the limits into account that are judged from several poses together. Computes the load of each machine under
+  /// such a limit from the values that add_pose() recorded, raises the machine's element of `loads` to it if it is
+  /// larger, and sets `beyond` [limits x machines] as add_pose() does. The load of a machine that is not solved at some
+  /// pose is meaningless.
   void end_poses(std::span<double> loads, std::span<std::uint8_t> beyond) {
     const std::size_t count = loads.size();
     for (std::size_t k = 0; k < limits_.size(); ++k) {

@@ -56,12 +56,13 @@ std::vector<std::uint32_t> screen(const SearchProblem& problem, std::span<const 
 /// Solves, at the tolerances of `point`, those machines of a design that may decide whether the yield is kept
 /// (screen()).
 ScreenedMachines try_screened(const SearchProblem& problem, const ToleranceDesign& design, const TolerancePoint& point);
-/// Solves all machines with this seed at the tolerances of a candidate, and screens them.
+/// Solves all machines with this seed at the tolerances of a candidate, and selects those that may decide (screen()).
 ToleranceDesign try_all(const SearchProblem& problem, Candidate candidate, std::uint64_t seed);
-/// The design, with the loads of screened machines in place of those from the last trial of all machines.
+/// The design with the loads of the machines that screen() selected in place of those from the last trial of all
+/// machines.
 ToleranceDesign with_screened_loads(ToleranceDesign design);
 /// Solves only a part of all machines (a pilot) at the design's tolerances. Returns whether one of its rejects is a
-/// machine that was screened out.
+/// machine that screen() did not select.
 bool misses_rejects(const SearchProblem& problem, const ToleranceDesign& design);
 /// Multiplies all tolerances by one factor, except those of the parts marked in `stays` [parts], so that the screened
 /// machines have as many rejects as the design may have. If no factor that was tried keeps the yield for these

@@ -71,8 +71,8 @@ MemoryOutlook monte_carlo_memory(const Study& study, const Model& model, const P
   memory.file += numbers;
   if (machines) return sum_of(memory, machine_memory(study, model, plan));
   if (!plan.adaptive()) return memory;
-  // The next round of adaptive sampling continues from packed sketches of the finished poses; kPackedSketch is the size
-  // of one sketch in bytes.
+  // The next round of adaptive sampling continues from packed quantile sketches (QuantileSketch), one for each response
+  // at each finished pose. kPackedSketch: size of one of them in bytes.
   constexpr std::size_t kPackedSketch = 6000;
   const std::size_t kept =
       std::min(plan.poses().size() * responses * kPackedSketch, MonteCarloCollector::kMostKeptBytes);

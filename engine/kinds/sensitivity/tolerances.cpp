@@ -48,7 +48,7 @@ const Group<ToleranceGroup> kToleranceGroup{
 
 const std::vector<Attribute<SensitivityResult>> kIndexLevel{{"conf_level", &SensitivityResult::conf_level}};
 
-/// The fields of the indices, which other groups of a result file contain as well.
+/// The fields of the group /tolerances that repeat indices of the group /sensitivity.
 const Fields<SensitivityResult> kIndexFields{
     {"index", &SensitivityResult::global, kIndexUnit,
      "Global sensitivity index as published, /sensitivity/global: tolerances are counted from it"},
