@@ -31,7 +31,8 @@ struct Density {
   }
 };
 
-/// Integrals of a density over those middles and tilts of a feature with which it is inside its zones.
+/// Integrals of a density over all displacements of a feature's middle and all tilts for which the feature is inside
+/// its zones.
 struct Integrals {
   double one = 0.0;     ///< integral of the density
   double middle = 0.0;  ///< integral of the density times the sum of the squared errors of the middle

@@ -91,11 +91,11 @@ struct NamedCurve {
   double end;               ///< time at which the curve ends, s
   /// The point that is added to every point of the curve, unless a study states another one: chart coordinates, SI.
   std::vector<double> origin;
-  /// Returns the point of the curve at a time (s): chart coordinates, SI, relative to the origin.
+  /// Returns the point of the curve at a time (s): chart coordinates, SI, relative to `origin`.
   std::function<std::vector<double>(double time)> at;
 };
 
-/// The displacement of a joint from the home configuration, as it is named in results and in limits of studies.
+/// The name and dimension of a joint's displacement from the home configuration, for results and for limits of studies.
 struct JointDisplacement {
   std::string name;     ///< name in study and result files, such as "q_1_1"
   Dimension dimension;  ///< length (m) or angle (rad)

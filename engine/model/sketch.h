@@ -19,8 +19,8 @@ struct SketchedJoint {
   bool actuated;       ///< true if a drive moves the joint
   SketchVector point;  ///< point of the joint: the origin of `frame` before the joint moves
   SketchVector axis;   ///< direction of the joint's first axis
-  /// True if the frame from this joint to the next one, or to the platform, has errors; for the first joint also true
-  /// if the joint itself or the base has errors.
+  /// True if the frame behind this joint (that of the next joint, or of the platform) has errors; for the first joint
+  /// also true if the joint itself or the base has errors.
   bool has_errors;
   std::size_t first = 1;   ///< index in the limb's list of Sketch::frames: frame of the joint's first axis
   std::size_t frame = 1;   ///< index in the limb's list of Sketch::frames: frame with its origin at the joint

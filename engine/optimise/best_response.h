@@ -24,7 +24,7 @@ struct ProcessResponse {
   double size;              ///< best size of the part, in [lo, hi] of the process
   double cost;              ///< cost at the best sizes
   double lagrangian;        ///< cost + price x size at the best sizes
-  double inner_size = 0.0;  ///< best size of a pair's inner part: within its bounds and at most share x `size`
+  double inner_size = 0.0;  ///< best size of a pair's inner part: within its bounds and at most Within::share x `size`
 };
 
 /// Finds the best sizes under this process (ProcessResponse).

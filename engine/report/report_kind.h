@@ -15,7 +15,8 @@
 
 namespace poesy {
 
-/// Facts about the study of a result that its kind of study states, for the texts on what was run.
+/// Facts that a kind of study states about a study, from its result. Reports use them in the sentences that describe
+/// the run.
 struct StudyWords {
   bool draws = false;        ///< true if errors were drawn from distributions
   bool from_tables = false;  ///< true if errors, or measurements of them, came from a table

@@ -68,7 +68,8 @@ struct StudyTable {
 /// elements of lists have numbers: "errors.override.delta_1", "analysis.groups[0]".
 const StudyTable* find_table(const StudyTables& tables, std::string_view path);
 
-/// Returns true if a key with this list StudyKey::only_for applies when the chooser has this word.
+/// Returns true if a key applies when the value of the table's key StudyTable::chooser is this word. only_for: the
+/// key's StudyKey::only_for.
 bool holds_for(std::span<const std::string_view> only_for, std::string_view word);
 
 /// The explanation of a key as plain text: its meaning and bounds, when it applies or is required, and its default.

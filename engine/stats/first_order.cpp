@@ -39,8 +39,8 @@ struct Strata {
   Vector steps;      ///< 1 / difference of the mean error between the two neighbouring bins; 0 without neighbours
   Vector spread;     ///< variance of the error within the bin
   Vector asymmetry;  ///< third central moment of the error within the bin
-  /// One bit for each bin: 1 if the error decreases from this bin to the next; then the two bins are not neighbours.
-  /// This happens between the two halves of a shifted distribution.
+  /// One bit for each bin: 1 if the mean error decreases from this bin to the next, which happens between the two
+  /// halves of a shifted distribution. No slope is computed across such a step.
   std::uint32_t ends = 0;
 
   Eigen::Index bins() const { return count.size(); }

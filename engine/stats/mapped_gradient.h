@@ -41,9 +41,10 @@ class MappedGradient {
   /// The number of machines for which the linear map (LinearLimits) predicts the wrong verdict.
   std::uint64_t misjudged() const { return misjudged_; }
 
-  /// dY/dt, the derivative of the yield Y by the size t of one error. The interval is skewed_mean() over the machines.
-  /// Its second moment includes four more machines that the map misjudges (kAddedRejects), with the mean square of the
-  /// score over all machines. Preconditions: the error is a MappedError; 0 < conf_level < 1.
+  /// dY/dt, the derivative of the yield Y by the size t of one error. The interval is that of skewed_mean() over the
+  /// machines. To the second moment that it uses, four assumed machines are added that the map misjudges
+  /// (kAddedRejects), each with the mean square of the score over all machines. Preconditions: the error is a
+  /// MappedError; 0 < conf_level < 1.
   Estimate gradient(std::size_t error, double conf_level) const;
   /// The change of the yield if the size t of one error grows by the factor kErrorGrowth, with the interval and
   /// preconditions of gradient().

@@ -23,7 +23,8 @@ struct NumberBlock {
   void sort_few();
 
   /// Writes the block in the form that a sketch needs. Up to kMostExact numbers are written exactly. In a larger block
-  /// each number takes two bytes (four if the numbers span more than kMostPagesSpanned pages on every scale).
+  /// each number takes two bytes, or four if even the coarsest BucketScale needs more than kMostPagesSpanned pages
+  /// (blocks of buckets) for the numbers.
   void write(ByteWriter& to) const;
   static NumberBlock read(ByteReader& from);  ///< Reads a block. Throws BytesError for one that no numbers can give.
 };

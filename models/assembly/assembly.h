@@ -119,7 +119,7 @@ struct Assembly {
   std::vector<Vector3> points;
   std::optional<Vector3> tool = {};  ///< tool point, in the platform's frame (m)
   Load load = {};                    ///< gravity and external loads
-  Metric metric = Metric::platform;  ///< source of the limbs' compliance
+  Metric metric = Metric::platform;  ///< whether compliances follow from `points` or from stiffness
   double reach = 1.0;                ///< unit of lengths in the solvers (m)
 
   /// The number of independent loops of limbs.

@@ -79,8 +79,8 @@ class OwnStep {
     T columns[6 * kMostOwnJoints];               ///< columns of S: twists of the passive joints
     T turned[6 * kMostOwnJoints];                ///< columns of D = E(-ad xi) S, with E of OwnStep
     T inverse[kMostOwnJoints * kMostOwnJoints];  ///< inverse of the limb's matrix
-    T by_to[6 * kMostOwnJoints];                 ///< dq per unit of V_b
-    T by_from[6 * kMostOwnJoints];               ///< dq per unit of V_a
+    T by_to[6 * kMostOwnJoints];                 ///< dq of the passive joints per unit of V_b, the twist of body `to`
+    T by_from[6 * kMostOwnJoints];               ///< dq per unit of V_a, the twist of body `from`
   };
 
   /// Computes the wrench that belongs to a twist between a limb's end and its body: C^-1 twist, with the compliance C.

@@ -9,8 +9,8 @@
 
 namespace poesy::chain {
 
-/// A pass is an attempt to solve samples by one method. A sample that a pass does not solve goes to the next one; see
-/// BlockKernel.
+/// A pass is an attempt to solve samples by one method. A sample that a pass does not solve goes to the next one.
+/// BlockKernel says when a step is safe.
 enum class KernelPass {
   published,  ///< Gauss-Newton with the published stopping rule
   direct,     ///< Newton's method, which stops at the first unsafe step

@@ -65,7 +65,7 @@ Linearised linearise(const SearchProblem& problem, StageLog& log) {
   }
   log.add("linear", *candidate, 0, 0);
   // The first linearisation does not see errors that act only together with others. Until their effects are measured,
-  // their tolerances are at most the usual ones.
+  // their tolerances are at most those that follow from [errors] (`usual`).
   const ToleranceLimits limits = programme.limits(linearisation.squares, small, candidate->share);
   for (std::size_t i = 0; i < programme.size(); ++i) {
     bool acts = false;

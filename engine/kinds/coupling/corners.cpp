@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kBlock = 256;
 
 /// The search also tries sums and differences of responses (CornerSearch::directions). No further response is combined
-/// once there are more sums than this. The three components of a vector have 13 sums.
+/// once there are this many sums. The three components of a vector have 13: 3 of one component, 6 of two, 4 of three.
 constexpr std::size_t kMostSums = 13;
 
 Signs opposite(Signs signs) {

@@ -33,8 +33,8 @@ constexpr std::array kScales{1.0, -1.0, kSmallerSize, -kSmallerSize};
 /// The number of poses at which linearity is checked.
 std::size_t chosen_poses(const Plan& plan) { return some_poses(plan.poses().size()); }
 
-/// The draws of one cell (one error at one of chosen_poses()) that are solved again at another size. chosen_cell:
-/// number of this cell; all poses of one error come before those of the next.
+/// The draws of one cell (one error at one of the poses at which linearity is checked) that are solved again at another
+/// size. chosen_cell: number of this cell; all poses of one error come before those of the next.
 WorkUnit first_draws(const Plan& plan, std::size_t chosen_cell) {
   const std::size_t poses = chosen_poses(plan);
   return {chosen_cell / poses, some_pose(chosen_cell % poses, plan.poses().size()), SampleIndex(0),
