@@ -90,7 +90,7 @@ class Compare(ProgramTest):
 
     def test_each_of_several_limits(self):
         """The share within each limit has a verdict of its own, also if another limit differs."""
-        for name, angle in (("a", "0.1 deg"), ("b", "0.1 deg"), ("c", "0.09 deg")):
+        for name, angle in (("a", "0.08 deg"), ("b", "0.08 deg"), ("c", "0.07 deg")):
             study = (self.folder / f"{name}.toml").read_text()
             self.write(f"{name}.toml", study.replace('gap = "0.04 mm"', f'gap = "0.04 mm", angular_deformation = "{angle}"'))
             self.succeeds("run", f"{name}.toml", "--quiet")
