@@ -128,7 +128,7 @@ TEST(HtmlTable, NamesRowsByTheFirstNumberWhereItHasNoTexts) {
   EXPECT_EQ(html.find("<th scope=\"row\">"), std::string::npos) << html;
 }
 
-TEST(HtmlTable, MarksColumnsThatAreHiddenFirstAndThoseThatAreNeverHidden) {
+TEST(HtmlTable, MarksColumnsThatAreHiddenFirstOrNever) {
   const Table table{.name = "t",
                     .caption = "c",
                     .columns = {{"error", "error", ""},

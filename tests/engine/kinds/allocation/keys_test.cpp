@@ -107,7 +107,7 @@ TEST(StudyOfTolerances, HasDefaults) {
   EXPECT_EQ(part.hi, std::numeric_limits<double>::infinity());
 }
 
-TEST(StudyOfTolerances, WarnsIfErrorsEndElsewhereThanAtTheTolerance) {
+TEST(StudyOfTolerances, WarnsIfErrorsDoNotEndAtTheTolerance) {
   const auto doubts = [](const std::string& distribution, const std::string& sigmas) {
     return read(with_analysis(
                     kLimits + "sigmas = " + sigmas + "\n[[analysis.parts]]\nfactors = \"linear\"\neach = true\n",

@@ -109,7 +109,7 @@ TEST_F(AllocationReport, HasTheYieldAsAMonteCarloStudy) {
   EXPECT_EQ(column(yield, "rejects"), Texts{"360"});
 }
 
-TEST_F(AllocationReport, SaysThatNoPartCanHaveErrorsDrawnAnewAtEachPose) {
+TEST_F(AllocationReport, SaysThatPlaysAreInNoPart) {
   found().part_members(1) = "delta_2";
   result.factor_draws = {"per machine", "per pose"};
   EXPECT_NE(
