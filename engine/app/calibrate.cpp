@@ -117,7 +117,7 @@ std::vector<GeometryParameter> names_in_expressions(const Study& study) {
   return list;
 }
 
-/// The names in an expression. A name directly after a number is a unit, and is left out.
+/// The names in an expression. A name that follows a number, as in "5 mm", is a unit and is left out.
 std::vector<std::string> names_in(const std::string& text) {
   const auto is_letter = [](char c) { return c == '_' || std::isalpha(static_cast<unsigned char>(c)) != 0; };
   const auto is_part = [&](char c) { return is_letter(c) || std::isdigit(static_cast<unsigned char>(c)) != 0; };

@@ -94,7 +94,7 @@ std::optional<SelectedPoses> poses_of(const EvaluateOptions& options, const Stud
   return poses;
 }
 
-/// Tells that the command was stopped.
+/// Tells the user that the command was stopped, and returns the exit code.
 int interrupted() {
   say(Message::note, "interrupted; nothing was written");
   return kInterrupted;
@@ -143,7 +143,8 @@ std::size_t memory_of(const Evaluated& all) {
   return all.poses.poses.size() * rows * outcomes + all.errors.values.size() * sizeof(double);
 }
 
-/// Solves the errors, and prints or writes the outcomes. path: path of the result; empty: no result is written.
+/// Solves the errors, prints and judges the outcomes, and returns the exit code. path: path to which the result is
+/// written; empty: no result is written.
 int solve(const EvaluateOptions& options, const Evaluated& all, const std::string& path) {
   const auto& [study, model, poses, errors, pairing] = all;
   const auto start = std::chrono::steady_clock::now();

@@ -13,9 +13,9 @@ struct ExpectedTime {
   double most;  ///< duration with the largest number of samples
 };
 
-/// The expected duration of a run. To find it, the function does some pieces of each sort of the study's work, at least
-/// one of each, and measures their time. threads: number of threads of the run. seconds: time (s) after which no more
-/// pieces of a sort are begun. Defined in check.cpp.
+/// The expected duration of a run. It is measured on pieces of the study's work: for each sort of work (Outlook), at
+/// least one piece is done. threads: number of threads of the run. seconds: time (s) after which no more pieces of a
+/// sort are begun. Defined in check.cpp.
 ExpectedTime expected_time(const Outlook& expected, std::size_t threads, double seconds);
 
 /// The duration above which the program asks before it starts a run, s.

@@ -14,8 +14,8 @@ namespace poesy::app {
 
 double seconds_of_long_run(const Study& study, const Model& model, const PoseSet& poses, std::size_t threads,
                            std::size_t runs) {
-  // A run with fewer draws takes less than kLongRun. It makes about one solve for each draw, and with kFewDraws solves
-  // on one thread, each solve would have to take more than 8 ms. Solves are much faster.
+  // A run with fewer draws takes less than kLongRun. It makes about one solve for each draw. To take kLongRun on one
+  // thread, kFewDraws solves would have to take more than 8 ms each, and solves are much faster.
   constexpr double kFewDraws = 1e7;
   // The first estimate of the duration is rough, because it is measured on single pieces of work. If it is below this
   // limit, the run is surely shorter than kLongRun.

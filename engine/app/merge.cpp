@@ -48,7 +48,7 @@ std::size_t state_bytes(std::span<const Bytes> states) {
   return sum;
 }
 
-/// The least memory that is needed to read the shards, bytes. A missing file counts as zero.
+/// The least memory that is needed to read the shards, bytes. A missing file is left out.
 std::size_t file_bytes(std::span<const std::string> paths) {
   std::size_t sum = 0;
   for (const std::string& path : paths) {

@@ -92,8 +92,9 @@ std::string within(std::size_t width, std::string line) {
   return line.size() <= width ? std::move(line) : std::string();
 }
 
-/// A line with the percentage, a bar, `details` (rate and number of failed solves) and the time left. The bar takes all
-/// free columns except a few, because the text of the time left may become longer. Empty if there is too little room.
+/// A line with the percentage, a bar, `details` (rate and number of failed solves) and the time left. The bar takes the
+/// free columns, at most kLongestBar. A few columns stay free, because the text of the time left may become longer.
+/// Empty if there is too little room.
 std::string with_bar(const ProgressFacts& facts, const std::string& details, std::size_t width) {
   const std::string begin = stage_text(facts) + fmt::format("{:5.1f} % ", percent_done(facts.progress));
   const std::string left = left_text(facts);
@@ -219,7 +220,7 @@ void ProgressPrinter::begin_design(std::size_t design, std::size_t designs) {
 void ProgressPrinter::operator()(const Progress& progress) {
   const RecentRate::Clock::time_point now = RecentRate::Clock::now();
   const std::uint64_t done = progress.solves - progress.before;
-  if (done < done_) {  // a new stage of the study began, whose solves are counted from 0
+  if (done < done_) {  // a new stage of the study began (a call of fold()); solves of a stage are counted from 0
     rate_ = RecentRate(now);
     ++stage_;
   }

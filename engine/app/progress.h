@@ -57,8 +57,8 @@ struct ProgressFacts {
 };
 
 /// A line of progress as text: "43.2 % done, 7.21 M samples/s, 12 not converged (0.0012 %), 1 min 20 s left". In a
-/// sweep the line begins with "design 4 of 10: ". The percentage is then that of this design, and the time left is that
-/// of all designs, as if each had as many solves as this one.
+/// sweep the line begins with "design 4 of 10: ". The percentage is then that of this design. The time left is that of
+/// this and all later designs, if each later design has as many solves as this one.
 std::string plain_line(const ProgressFacts& facts);
 
 /// A line of progress with a bar, in at most `width` columns. If there is too little room, the bar becomes shorter, and

@@ -54,9 +54,10 @@ std::string cpu_name() {
   return "unknown";
 }
 
-/// Advice with which fewer samples may fail: on poses that are far outside the workspace, on machines that cannot be
-/// assembled, otherwise on options. The solver's method is named only for the metric "published" and for mechanisms
-/// without a metric, because it matters only for these.
+/// Advice on how fewer samples may fail. It is about the units of the poses if these are far outside the workspace,
+/// about clearances and errors if most failed machines cannot be assembled, and otherwise about solver options and the
+/// sizes of errors. The solver's method is named only for the metric "published" and for mechanisms without a metric,
+/// because it matters only for these.
 std::string advice(const Study& study, const PoseSet& poses, const SolveCounts& solves) {
   const std::string far = far_outside_clause(poses, study.model());
   if (!far.empty()) return "look at the units of the poses: " + far;
@@ -279,7 +280,7 @@ void check_files_beside(const std::string& result, std::span<const std::string> 
   for (const std::string_view end : kBeside) {
     const std::string file = path_beside(path, end);
     check_name_length(file);
-    std::error_code ignored;  // a path that cannot be examined counts as no file
+    std::error_code ignored;  // a path that cannot be examined is treated as if there were no file
     for (const std::string& input : inputs) {
       if (!std::filesystem::equivalent(file, input, ignored)) continue;
       throw InputError({input}, "would be replaced by the study that confirms the result, " + file,

@@ -20,8 +20,8 @@ namespace poesy::app {
 
 /// The facts about a run that has just ended on this machine. wall_seconds: duration of the run, s.
 RunFacts run_facts(double wall_seconds, std::size_t threads, std::uint64_t solves);
-/// The number of samples of a run as text: "2000 solves". If some responses were computed from series: "2000 samples
-/// (40 solved, the others by series)".
+/// The number of samples of a run as text: "2000 solves". If some samples were computed from certified series
+/// (engine/run/series_model.h): "2000 samples (40 solved, the others by series)".
 std::string samples_text(const RunFacts& facts);
 
 /// Options of the search for poses.
@@ -100,12 +100,12 @@ FileError too_little_memory(const std::string& path, const std::string& work, co
 void warn_of_mechanism(const Study& study, const Model& model);
 
 /// What looks like a mistake, one line each: in the mechanism, in the sizes of drawn errors (size_doubts()), in the
-/// numbers of the study's tables and the boxes in which it seeks poses (doubts_of()), and in the points of a calibrated
-/// study (correction_doubt()).
+/// numbers of the tables that the study names and the ranges of coordinates in which it seeks poses (doubts_of()), and
+/// in limits on points for which the correction of the actuators is not best (correction_doubt()).
 std::vector<std::string> all_doubts(const Study& study, const Model& model, const SelectedPoses& poses);
 
-/// Notes on the study, one line each: how its machines are calibrated, which errors are constant, and what its kind
-/// says about the study (StudyKind::note).
+/// Notes on the study, one line each: how its machines are calibrated, which errors are constant, and the note of the
+/// kind of study (StudyKind::note).
 std::vector<std::string> study_notes(const Study& study);
 
 /// Reads a result file. Warns on stderr if the file was changed after it was written. Throws FileError.

@@ -145,8 +145,8 @@ class ResumableRun {
   /// to a result.
   void discard() { files_.remove(); }
 
-  /// Keeps the last state, if possible, after the run failed for lack of memory or because a file could not be written.
-  /// Tells the user how to continue.
+  /// Writes a last checkpoint, if possible, after the run failed for lack of memory or because a file could not be
+  /// written. Tells the user how to continue.
   void rescue() {
     try {
       if (!no_room_ && checkpoints_) checkpoints_->save();

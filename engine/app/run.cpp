@@ -33,8 +33,8 @@
 namespace poesy::app {
 namespace {
 
-/// The number of processors for this process: those to which the launcher bound it. If the launcher did not bind it,
-/// the process takes an equal share of the machine's processors.
+/// The number of processors for this process: those to which the launcher bound the process, or an equal share of the
+/// machine's processors if the launcher did not bind the process.
 std::size_t processors_of_rank(std::size_t ranks_on_this_machine) {
   const auto all = static_cast<std::size_t>(std::max(1L, sysconf(_SC_NPROCESSORS_ONLN)));
   cpu_set_t allowed;
@@ -145,8 +145,8 @@ void follow(const RunCommandOptions& options, std::size_t threads, Team& team) {
   }
 }
 
-/// Ends a run if the ranks did not begin their work, and returns the exit code. The checkpoint of an earlier run is
-/// kept; without one, an empty checkpoint is written, from which the run can be resumed.
+/// Ends a run if the ranks did not begin their work, and returns the exit code. After an interrupt, the checkpoint of
+/// an earlier run is kept; if there is none, an empty checkpoint is written, from which the run can be resumed.
 int leave_before_the_start(const Team& team, ResumableRun& resumable) {
   const int code = say_why_a_rank_left(team);
   if (code != kInterrupted) return code;

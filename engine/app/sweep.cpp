@@ -86,8 +86,8 @@ Study study_with(const SweepOptions& options, std::span<const GivenKey> given) {
   return study;
 }
 
-/// Collects what looks like a mistake in designs. A doubt that several designs raise is kept once, with the first of
-/// these designs.
+/// Collects warnings of what looks like a mistake in the designs. If several designs give the same warning, it is kept
+/// once, with the first of these designs.
 class DesignDoubts {
  public:
   void add(std::span<const GivenKey> given, const std::vector<std::string>& doubts) {
@@ -98,7 +98,7 @@ class DesignDoubts {
     }
   }
 
-  /// Prints the first doubts as warnings.
+  /// Prints the first kMost warnings.
   void warn() const {
     constexpr std::size_t kMost = 3;
     for (std::size_t n = 0; n < std::min(kMost, doubts_.size()); ++n) {
@@ -111,11 +111,11 @@ class DesignDoubts {
 
  private:
   std::vector<std::string> doubts_;
-  std::vector<std::string> designs_;  ///< values of the design of each doubt, in words
+  std::vector<std::string> designs_;  ///< [warnings] values of the design that gave the warning, in words
 };
 
-/// Makes the design with these values: its study and its poses. Adds what looks like a mistake in the design to
-/// `doubts`. None if the user stopped the search for poses.
+/// Makes the design with these values: its study and its poses. Adds to `doubts` what looks like a mistake in the
+/// design (all_doubts()). None if the user stopped the search for poses.
 std::optional<SweptDesign> design_of(const SweepOptions& options, const std::vector<GivenKey>& given,
                                      const std::atomic<bool>& stop, DesignDoubts& doubts) {
   Study study = study_with(options, given);
@@ -247,7 +247,8 @@ void check_geometry_key(const std::string& set, const SweptKey& swept, const Mod
   }
   const auto is_bare = [](const std::string& value) { return parse_number(value).has_value(); };
   if (parameter->dimension == Dimension::number || !std::ranges::all_of(swept.values, is_bare)) return;
-  // Small numbers of a length are probably in SI, as in Python. All other numbers are probably in the unit of drawings.
+  // The unit that the user probably meant is suggested first: m if all values of a length are small, otherwise the unit
+  // of drawings (mm or deg).
   constexpr double kSmall = 10.0;
   std::array<std::string_view, 2> units{display_unit(parameter->dimension).name, si_unit(parameter->dimension)};
   const auto is_small = [](const std::string& value) { return std::abs(*parse_number(value)) < kSmall; };

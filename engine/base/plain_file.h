@@ -24,7 +24,7 @@ class PlainFile {
   ~PlainFile();
 
   bool is_open() const { return descriptor_ >= 0; }  ///< Returns true if the file is open.
-  /// The reason why the file is not open. other() is empty unless it is the reason.
+  /// The reason why the file is not open. other() is empty unless the reason is that the path is not a plain file.
   /// @{
   std::string_view other() const { return other_; }  ///< result of other_than_file()
   int error() const { return error_; }  ///< errno of opening; EINVAL if other() is not empty; 0 if the file is open

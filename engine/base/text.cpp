@@ -112,7 +112,8 @@ std::size_t character_length(std::string_view text) {
     if ((byte(k) & 0xC0U) != 0x80) return 0;
   }
   const std::uint32_t code = code_point(text.substr(0, length));
-  // The smallest code point of each length, because only the shortest form is valid. Surrogates are invalid (RFC 3629).
+  // The smallest code point for each length in bytes, because only the shortest form is valid. Surrogates are invalid
+  // (RFC 3629).
   constexpr std::array<std::uint32_t, 6> kFirst{0, 0, 0x80, 0x800, 0x10000, 0x110000};
   const bool surrogate = code >= 0xD800 && code < 0xE000;
   return code >= kFirst[length] && code < kFirst[length + 1] && !surrogate ? length : 0;

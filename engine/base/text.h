@@ -29,8 +29,8 @@ bool is_control(std::uint32_t code);
 
 std::size_t text_width(std::string_view text);  ///< The number of characters of a UTF-8 text.
 
-/// The lines of a text after line breaks at blanks, but not within numbers such as "12 000" or "5 %". A line has at
-/// most `width` characters; the first line has at most `first`, if that is given. A longer word has its own line.
+/// Breaks a text into lines at blanks, but not within numbers such as "12 000" or "5 %". A line has at most `width`
+/// characters; the first line has at most `first`, if that is given. A longer word has its own line.
 std::vector<std::string> wrapped(std::string_view text, std::size_t width, std::optional<std::size_t> first = {});
 
 /// A user's text for a message: on one line, valid UTF-8, cut off after about `most` bytes, with "?" instead of control
@@ -50,8 +50,8 @@ std::string shell_command(const std::vector<std::string>& words);
 /// other programs ("sigma" for "std"). Empty if no known word is similar enough.
 std::string_view nearest(std::string_view word, std::span<const std::string_view> known);
 
-/// A hint for an unknown word: "did you mean 'sigma'?" if a known word is similar, otherwise all known words: "known:
-/// sigma, half_width".
+/// A hint for an unknown word: "did you mean 'sigma'?" if a known word is similar, otherwise the known words (of many
+/// words, only the first): "known: sigma, half_width".
 std::string suggestion(std::string_view word, std::span<const std::string_view> known);
 
 /// The words as a list of alternatives, such as "a, b or c".

@@ -106,8 +106,8 @@ bool is_too_small(std::string_view number) {
   return number.find_first_of("123456789") > number.find('.');
 }
 
-/// The reason why the text does not begin with a finite number, or that the number has a decimal comma; empty if there
-/// is no such problem.
+/// The reason why the text does not begin with a finite number, or a remark that the number has a decimal comma; empty
+/// if there is no such problem.
 std::string problem_of(const NumberRead& read, std::string_view text) {
   if (read.failure == std::errc::result_out_of_range) {
     const std::string_view number = text.substr(0, text.size() - read.rest.size());

@@ -21,9 +21,10 @@ struct Controllers {
 };
 
 /// Solves calibrated machines, each at the drive positions to which its own controller moves. Responses that are
-/// components of the platform's displacement have the value of the remaining displacement: that from the commanded
-/// pose, as the measuring device sees it. All other responses are those of the machine at these drive positions. The
-/// status is SolveStatus::non_finite if the machine was not calibrated, or if its controller finds no drive positions.
+/// components of the platform's displacement, or norms of them, get the values of the remaining displacement, which is
+/// the displacement from the commanded pose as the measuring device sees it. All other responses are those of the
+/// machine at these drive positions. The status is SolveStatus::non_finite if the machine was not calibrated, or if its
+/// controller finds no drive positions.
 class CorrectedEvaluator final : public Evaluator {
  public:
   /// The model that is solved is solving_model(model), without the responses that a study adds. Throws
@@ -44,7 +45,7 @@ class CorrectedEvaluator final : public Evaluator {
     std::array<SolveStatus, 2> status;
     std::array<std::uint32_t, 2> iterations;
 
-    /// From rows [rows x 2] with a value for each set of errors, the values for the second set.
+    /// Returns the values for the second set of errors from rows [rows x 2] with a value for each set.
     static std::vector<double> second(const std::vector<double>& rows);
   };
   /// The outcome of one machine; see OutcomeBlock.
@@ -55,8 +56,7 @@ class CorrectedEvaluator final : public Evaluator {
     std::uint32_t iterations = 0;
   };
 
-  /// The largest number of poses for which `poses_` keeps a CommandedPose, because later samples use the same poses
-  /// again.
+  /// `poses_` keeps the CommandedPose of at most this number of poses, for later samples at the same poses.
   static constexpr std::size_t kMostPoses = 1024;
 
   const CommandedPose& commanded_at(std::span<const double> pose);

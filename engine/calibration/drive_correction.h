@@ -33,8 +33,8 @@ class DriveCorrection {
   DriveCorrection(ExactMachine& machine, CoordinateError commanded)
       : machine_(&machine), commanded_(std::move(commanded)) {}
 
-  /// The pose at which the perfect mechanism has the corrected drive positions. errors: those that the controller
-  /// corrects (all errors of the model, SI). None if that pose is out of reach or not found.
+  /// The pose at which the perfect mechanism has the corrected drive positions. errors: [all errors of the model]
+  /// errors that the controller corrects, SI. None if that pose is out of reach or not found.
   std::optional<std::vector<double>> drive_at(std::span<const double> pose, const Vector& errors) const;
 
   /// Computes a CommandedPose, which serves all controllers that get this command. Precondition: the pose is reachable.

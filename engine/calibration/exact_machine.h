@@ -52,7 +52,7 @@ Displacement seen_from(const Displacement& displacement, const Placement& from, 
 class ExactMachine {
  public:
   /// Throws std::invalid_argument if the model has no responses for the displacement of the platform, or no sketch of
-  /// the home pose. what() is a clause about the mechanism.
+  /// the home pose with a frame of the platform. what() is a clause about the mechanism.
   ExactMachine(const Model& model, const SolverOptions& solver);
 
   /// The model that is solved: solving_model() of the given model, without responses that a study adds to it.

@@ -13,7 +13,7 @@ namespace {
 // A fitted number is undetermined if its diagonal element of the projector on the null space exceeds this.
 constexpr double kUnseenShare = 1e-6;
 constexpr double kLeastFreedom = 1e-6;  // a value with 1 - leverage below this is not checked by any other value
-constexpr double kFalseOutlier = 0.01;  // probability that a measurement without outliers has at least one false one
+constexpr double kFalseOutlier = 0.01;  // probability that any value is called an outlier although none is
 
 /// The covariance of the scaled numbers, for the stated noise. Without a prior it is 0 along directions that are not
 /// determined. prior: Prior::root times the scale.

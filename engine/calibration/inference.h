@@ -36,7 +36,8 @@ struct Inference {
   Matrix covariance;  ///< [numbers x numbers] covariance of the fitted numbers, SI; 0 along undetermined directions
   /// [numbers x numbers] Correlation of the fitted numbers; NaN for a number that is not determined.
   Matrix correlation;
-  /// [numbers x numbers] Projector on the undetermined directions of the scaled numbers, without the prior.
+  /// [numbers x numbers] Projector on the directions of the scaled numbers that the measurements leave undetermined,
+  /// whatever the prior.
   Matrix null_projector;
   double quantile = kNaN;  ///< half-width of an interval divided by the standard deviation
   double sd_factor = 1.0;  ///< estimated ratio of the actual to the stated noise; 1 if the noise is known
@@ -49,7 +50,7 @@ struct Inference {
   /// an estimate from the other values only. NaN for an unchecked value.
   Vector outlier_score;
   double outlier_limit = kNaN;         ///< a value whose |outlier_score| exceeds this is an outlier
-  std::vector<std::size_t> outliers;   ///< indices of the outliers, largest score first
+  std::vector<std::size_t> outliers;   ///< indices of the outliers, largest |outlier_score| first
   std::vector<std::size_t> unchecked;  ///< indices of values with leverage 1, which no other value checks
   std::size_t below_noise = 0;         ///< number of singular values below 1: effects that are below the noise
   ObservabilityIndices indices;        ///< observability indices of the first ScaledFit::rank singular values

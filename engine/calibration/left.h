@@ -25,8 +25,8 @@ struct Knowledge {
 Knowledge knowledge(const FitResult& fit, const FittedDirections& directions, const Vector& sd, const Prior& prior,
                     double sd_factor);
 
-/// A controller that uses fitted numbers, and the frame in which the remaining displacement is stated. That is the base
-/// frame, or the measuring device's frame if the place of the device is unknown.
+/// A controller that uses fitted numbers, and the frame in which the remaining displacement is stated. This frame is
+/// the base frame, or the measuring device's frame if the place of the device is unknown.
 struct Corrected {
   Vector errors;  ///< [all errors] errors that the controller corrects, SI
   Vector phi;     ///< [places] place of the device from the fit that gave `errors`, SI
@@ -37,8 +37,8 @@ struct Corrected {
 struct LeftAtPose {
   std::vector<double> drive_at;  ///< pose at which the perfect mechanism has the corrected drive positions, SI
   Components mean;               ///< remaining displacement for the estimated errors, by an exact solve, SI
-  /// Standard deviations of the remaining displacement to first order, SI. Derivatives are taken at the perfect
-  /// machine, or if the frame is not Frame::known, at the estimated errors.
+  /// Standard deviations of the remaining displacement to first order, SI. Derivatives are taken at zero errors with
+  /// Frame::known, otherwise at the estimated errors.
   Components sd;
 };
 

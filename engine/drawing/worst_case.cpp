@@ -18,12 +18,14 @@ constexpr int kMostTurns = 200;  ///< largest number of steps of one ascent
 /// An ascent ends when a step increases the length by less than this share. Only the best of all ascents is continued
 /// until a step increases the length by less than kTop.
 constexpr double kNearTop = 1e-4;
-constexpr double kTop = 1e-14;       ///< the final ascent ends when a step increases the length by less than this share
-constexpr int kMostRounds = 1000;    ///< largest number of rounds of weighted_median()
-constexpr double kRest = 1e-15;      ///< weighted_median() ends when the gradient is below this share of the sum of
-                                     ///< weights
-constexpr double kEqual = 1e-14;     ///< costs that differ by less than this share count as equal
-constexpr double kNearRest = 1e-12;  ///< a gradient below this share of the sum of weights is rounding if it stalls
+constexpr double kTop = 1e-14;     ///< the final ascent ends when a step increases the length by less than this share
+constexpr int kMostRounds = 1000;  ///< largest number of rounds of weighted_median()
+constexpr double kRest = 1e-15;    ///< weighted_median() ends when the gradient is below this share of the sum of
+                                   ///< weights
+constexpr double kEqual = 1e-14;   ///< costs that differ by less than this share count as equal
+/// weighted_median() also ends when the gradient is below this share of the sum of weights and a round did not decrease
+/// it.
+constexpr double kNearRest = 1e-12;
 
 /// A vector perpendicular to an axis: a displacement (m) or slopes. In a zone between two planes, y is 0.
 struct Across {

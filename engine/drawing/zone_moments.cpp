@@ -55,7 +55,7 @@ Integrals integrals(const F& f, double end) {
 }
 
 /// For an axis with this lean, integrates over all displacements of the middle with which both ends stay in a disc.
-/// They fill a lens between two arcs.
+/// These displacements fill a lens between two arcs.
 Integrals over_lens(const Density& middle, double radius, double lean) {
   const auto at = [&](double angle) {  // integrand at an angle on an arc of the lens
     const double across = radius * std::sin(angle);
@@ -74,7 +74,7 @@ Integrals over_interval(const Density& middle, double half) { return {middle.mas
 
 /// Integrates over all tilts of a rectangle with |lift_x| + |lift_y| = lift. Returns the integral of the density, and
 /// the integral of the density times lift_x^2 + lift_y^2. The two sums (lift_x +- lift_y) / sqrt 2 are independent, and
-/// the larger one is lift / sqrt 2.
+/// the larger magnitude of the two is lift / sqrt 2.
 std::pair<double, double> rectangle_at(const Density& tilt, double lift) {
   const double larger = lift / sqrt2;
   const double weight = tilt.at(larger) * tilt.mass(larger);

@@ -10,8 +10,8 @@ namespace poesy::drawing {
 /// features and zones. Precondition: for ScatterShape::boundary, can_touch().
 FeatureSigmas scatter_sigmas(const Feature& feature, const ZoneScatter& scatter);
 
-/// Returns true if ScatterShape::boundary is defined for the feature. It is for an axis, a point or a distance without
-/// a zone of orientation.
+/// Returns true if ScatterShape::boundary is defined for the feature. It is defined for an axis, a point or a distance
+/// without a zone of orientation.
 bool can_touch(const Feature& feature);
 
 /// The largest value (m) of an error that is the only error of its feature: half the zone of location; for a distance,

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string_view>
 
-/// Preferred numbers of ISO 3, in whose steps sizes in workshops and catalogues are often graded.
+/// Preferred numbers of ISO 3, by which sizes in workshops and catalogues are often graded.
 namespace poesy {
 
 /// The basic series R5, R10 and R20 with 5, 10 and 20 numbers in each decade.

@@ -27,7 +27,8 @@ class CalibratingEvaluator final : public Evaluator {
  private:
   MachineCalibrator calibrator_;
   std::unique_ptr<calibration::CorrectedEvaluator> corrected_;
-  Matrix errors_;  ///< [all errors x samples] errors of the last block, SI; `corrected_` has their controllers
+  Matrix errors_;  ///< [all errors x samples] errors of the last block of samples, SI; `corrected_` has the controllers
+                   ///< of these machines
 };
 
 }  // namespace

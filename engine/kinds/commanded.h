@@ -11,10 +11,11 @@
 namespace poesy {
 
 /// Makes a function that computes the errors of the coordinates that the study's controller commands, from the
-/// displacement of the platform. A coordinate is recognised by its values at test poses: they must equal a component of
-/// the platform's position, or an angle of its rotation, at every test pose. Throws InputError if a coordinate is not
-/// recognised, or if the drives do not match: they are not as many as the pose coordinates, or the drives of one motor
-/// do not move together.
+/// displacement of the platform. tip_x, tip_y and tip_z are coordinates of the tool point, unless the mechanism has
+/// pose coordinates of these names. A pose coordinate is recognised by its values: they must equal a component of the
+/// platform's position, or an angle of its rotation, at every test pose. Throws InputError if a coordinate is not
+/// recognised, or if the drives do not match: their number differs from that of the pose coordinates, or the drives of
+/// one motor do not move together.
 calibration::CoordinateError commanded_coordinates(const Study& study, const Model& model,
                                                    const calibration::ExactMachine& machine, const PoseSet& poses);
 

@@ -21,8 +21,8 @@ void name_files_beside(Study& confirming, const std::string& stem);
 /// The names of the files that write_files_beside() writes.
 std::vector<std::string> files_beside(const Study& confirming);
 
-/// Writes the files that the study reads into a folder; their names are files_beside(). poses: the poses of the study.
-/// Throws FileError.
+/// Writes into a folder the files that the study reads; files_beside() lists their names. poses: the poses of the
+/// study. Throws FileError.
 void write_files_beside(const std::string& folder, const Study& confirming, const PoseSet& poses);
 
 /// Writes a study as NAME.toml and returns the path. The file begins with a comment on the errors that are held

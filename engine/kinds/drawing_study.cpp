@@ -25,8 +25,8 @@ using Side = Axis<"side">;  ///< The direction of a step of an error: Slopes::kU
 
 constexpr std::string_view kNone = "-";
 
-/// The step of the central differences, in standard deviations of the error. Curvature and rounding then each change a
-/// slope by at most about 1e-9 of its value.
+/// The step of the central differences, in standard deviations of the error: so small that curvature hardly changes a
+/// slope, but far above the rounding of the solves.
 constexpr double kDifferenceStep = 1.0 / 16.0;
 
 /// The features with a tolerance zone or a clearance whose errors all vary in the study.
@@ -172,8 +172,8 @@ DrawingResult described(const StudyRun& run, const std::vector<Feature>& feature
   return made;
 }
 
-/// [features] The variances (SI) of each feature's errors, if the study gives one of them another distribution than the
-/// zones do, such as a measured one. Empty for a feature whose errors all scatter as the zones state.
+/// [features] The variances (SI) of each feature's errors, if the study states a distribution for one of them, such as
+/// a measured one, that is not the one of its zone. Empty for a feature whose errors all scatter as the zones state.
 std::vector<OfErrors> own_variances(const Study& study, const std::vector<Feature>& features) {
   const auto by_zones = distributions_by_zones(study);
   std::vector<OfErrors> variances(features.size());

@@ -26,8 +26,8 @@ ToleranceKnowledge tolerance_knowledge(const ErrorModel& errors, std::vector<Fac
 /// FittedDirections.
 struct FittedColumns {
   /// Directions of the fitted errors. The scale of a fitted error is the standard deviation that follows from the
-  /// tolerances. If one of its errors has no tolerance, the scale is 1 mm for a length, otherwise 1 mm / reach of the
-  /// mechanism.
+  /// tolerances. If one of its errors has no tolerance, the scale is 1 mm for a length, otherwise 1 mm divided by the
+  /// reach of the mechanism.
   calibration::FittedDirections directions;
   /// Prior knowledge from the tolerances; fitted_columns() leaves it empty if the study uses none.
   calibration::Prior prior;
@@ -39,8 +39,8 @@ FittedColumns fitted_columns(const Study& study, const CalibrationTable& table,
                              const calibration::ExactMachine& machine);
 
 /// The columns of all errors that may differ from 0: first one for each error with a tolerance, then one for each
-/// fitted error that contains errors without a tolerance. The latter has weights only for the errors without a
-/// tolerance.
+/// fitted error that contains errors without a tolerance. The column of such a fitted error has weights only for its
+/// errors without a tolerance.
 FittedColumns all_columns(const Study& study, const CalibrationTable& table, const calibration::ExactMachine& machine);
 
 }  // namespace poesy

@@ -41,7 +41,7 @@ LimitedVectors::LimitedVectors(const Plan& plan, const Model& model, const Analy
     vectors_.push_back(std::move(vector));
   }
   const std::size_t errors = plan.factors().size();
-  // Number of products of two errors whose sums the fit at a pose keeps; none if no error is drawn anew at each pose.
+  // Number of products of two errors whose sums the fit at a pose keeps; 0 if no error is drawn anew at each pose.
   const std::size_t products = plan.per_pose().empty() ? 0 : errors * errors;
   if (plan.poses().size() * (rows_ * (errors + 1) + products) <= kMostSums) return;
   vectors_.clear();

@@ -11,7 +11,7 @@ namespace poesy {
 /// Every kind of study, in the order in which messages and help list them. There is no other list of kinds.
 std::span<const Kind* const> kinds();
 
-/// The parts of all kinds that read study files.
+/// The part of each kind that reads its study files (StudyKind), and the tables of all keys.
 const StudyKinds& study_kinds();
 
 /// The kind with this name, which may be a kind that only results have (calibration, sweep); null if there is none.

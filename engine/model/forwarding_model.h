@@ -51,8 +51,8 @@ class ForwardingModel : public Model {
   std::vector<std::string> unusual_errors() const override { return model_->unusual_errors(); }
 
   const Model& behind() const { return *model_; }  ///< The wrapped model.
-  /// Wraps an evaluator of the wrapped model, so that it also computes the responses that this model adds. Returns null
-  /// if the evaluator is null.
+  /// Wraps an evaluator of the wrapped model, so that the result also computes the responses that this model adds; by
+  /// default there are none. Returns null if the evaluator is null.
   virtual std::unique_ptr<Evaluator> formed(std::unique_ptr<Evaluator> evaluator) const { return evaluator; }
 
  protected:

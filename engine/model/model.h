@@ -78,7 +78,7 @@ struct PoseCoordinate {
 /// Alternative coordinates of a pose, such as those of the tool tip. A chart has as many coordinates as a pose.
 struct PoseChart {
   std::string name;                         ///< name in study files, such as "tip"
-  std::vector<PoseCoordinate> coordinates;  ///< coordinates, in the order of the numbers of a pose
+  std::vector<PoseCoordinate> coordinates;  ///< coordinates, in their order in a point of the chart
   std::string advice;  ///< advice for a message if no pose has the given coordinates, such as "lengthen h, or ..."
 };
 

@@ -130,8 +130,8 @@ class OwnRows {
     }
   }
 
-  /// Computes again the user's responses without a reference pose, because their terms may be responses that have one
-  /// and that subtract() has changed.
+  /// Computes the user's responses without a reference pose once more: their terms may be responses with a reference
+  /// pose, which subtract() has changed.
   void form_the_rest(std::span<double> rows, std::size_t samples) const {
     for (std::size_t k = 0; k < own_->size(); ++k) {
       if (!(*own_)[k].relative_to) form((*own_)[k], rows, row(rows, k, samples));

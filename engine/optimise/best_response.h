@@ -6,7 +6,8 @@
 #include "engine/optimise/sized_problem.h"
 
 /// The best response of a part to prices: the size (T^2, or T for Stacking::worst_case) at which its cost + price x
-/// size is least. The sum of these minima over all parts gives Lagrange's lower bound on the cost.
+/// size is least. The sum of these minima over all parts, minus the sum over the limits of multiplier x room, is
+/// Lagrange's lower bound on the cost.
 namespace poesy {
 
 /// The prices of a unit of size: of a part, and of the inner part if the part is the outer one of a pair (Within in

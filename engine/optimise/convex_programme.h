@@ -26,9 +26,9 @@ struct ConvexSolution {
 std::optional<ConvexSolution> solve_convex(const AllocationProblem& problem, const SizedProblem& sized,
                                            std::span<const std::size_t> working_set);
 
-/// [limits] The multipliers of all limits, in cost per unit of room (ToleranceLimits::room). multipliers: multipliers
-/// of the limits of the working set after division by their rooms, as in SizedProblem. Limits outside the working set,
-/// and negligible multipliers, get 0.
+/// [limits] The multipliers of all limits, in cost per unit of room (ToleranceLimits::room). multipliers:
+/// [working set] multipliers of the limits as SizedProblem states them: each limit divided by its room. Limits outside
+/// the working set, and limits with a negligible multiplier, get 0.
 std::vector<double> limit_multipliers(const ToleranceLimits& limits, std::span<const std::size_t> working_set,
                                       std::span<const double> multipliers);
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// x^exponent for x >= 0. The usual exponents are computed without std::pow, which is slower.
+/// x^exponent for x >= 0. Common exponents are computed without std::pow, which is slower.
 double raised(double x, double exponent) {
   if (exponent == 0.5) return std::sqrt(x);
   if (exponent == 1.0) return x;
@@ -26,7 +26,7 @@ double root(double x, double n) {
   return std::pow(x, 1.0 / n);
 }
 
-/// The z > 0 with z + log z = value (Lambert's W of exp(value)), by Newton's method for the logarithm of z.
+/// The z > 0 with z + log z = value (Lambert's W of exp(value)), by Newton's method; 0 if z underflows.
 double with_own_logarithm(double value) {
   double z = value > 1.0 ? value - std::log(value) : std::exp(value) / (1.0 + std::exp(value));
   if (z == 0.0) return z;

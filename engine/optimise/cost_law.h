@@ -41,7 +41,7 @@ class CostLaw {
   double at(double tolerance) const;
   /// The cost of the tolerance with this size, and its derivatives with respect to the size. Precondition: size > 0.
   CostCurve curve(double size, Stacking stacking) const;
-  /// The size > 0 at which cost + price x size is least; infinite for price 0. Preconditions: price >= 0, the law is
+  /// The size >= 0 at which cost + price x size is least; infinite for price 0. Preconditions: price >= 0, the law is
   /// not constant.
   double cheapest_size(double price, Stacking stacking) const;
   /// The term `fixed` of the law, which does not depend on the tolerance.

@@ -14,13 +14,13 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// Factor by which the parameter mu of the path (DualPath) falls from one point to the next.
 constexpr double kMuReduction = 0.1;
-/// The path ends when the cost is within this of its lower bound, as a share of the part of the cost that tolerances
-/// can change.
+/// The path ends when the cost exceeds its lower bound by at most this share of the cost that tolerances can change
+/// (changeable()).
 constexpr double kRelativeGap = 1e-12;
 /// The path ends if mu is below this share of multiplier_scale(), because rounding dominates there.
 constexpr double kSmallestMu = 1e-16;
-/// If processes are mixed, the path already ends when mu reaches this share of the part of the cost that tolerances can
-/// change.
+/// If processes are mixed, the path already ends when mu reaches this share of the cost that tolerances can change
+/// (changeable()).
 constexpr double kSmallestMixingMu = 3e-8;
 constexpr int kMaxNewtonSteps = 60;      ///< largest number of Newton steps to one point of the path
 constexpr int kMaxLineSearchSteps = 60;  ///< largest number of trial steps along one direction
@@ -228,8 +228,8 @@ bool DualPath::find_newton_direction(double mu) {
   return std::ranges::all_of(direction_, [](double one) { return std::isfinite(one); });
 }
 
-/// Changes the multipliers along Newton's direction to a larger value of the function that the path maximises
-/// (DualPath). The function is concave, so its slope falls along the direction. A step is too long if the slope at its
+/// Moves the multipliers along Newton's direction to a point at which the function that the path maximises (DualPath)
+/// is larger. The function is concave, so its slope falls along the direction. A step is too long if the slope at its
 /// end is below minus half of the slope at its beginning. After a step that is too long, the search continues between a
 /// shorter step and this one until the slope is small, because the function bends sharply where sizes reach a bound.
 void DualPath::search_line(double mu) {

@@ -25,8 +25,9 @@ struct PathTarget {
   /// Stop when the lower bound of the path reaches this value. Branch and bound sets it to the cost above which it
   /// prunes a node.
   double cutoff = std::numeric_limits<double>::infinity();
-  /// Also stop when the lower bound will hardly reach the cutoff. Branch and bound sets it, because it divides such a
-  /// node whatever the exact bound is. Do not set it if the multipliers are needed exactly.
+  /// Also stop when the lower bound will hardly reach the cutoff. Branch and bound then divides the node, whatever its
+  /// exact bound is, so it sets this member for all nodes except the root. Do not set the member if the multipliers are
+  /// needed exactly.
   bool only_to_branch = false;
 };
 

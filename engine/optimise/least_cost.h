@@ -40,7 +40,8 @@ enum class LeftOut {
 /// A pair of parts, in which the size (T^2, or T for Stacking::worst_case) of the inner part is at most a share of the
 /// size of the outer part. An example is an orientation zone (width T_o) within a location zone (width T): T_o^2 <= T^2
 /// / 2. Effects of the inner part may be negative, because with a finer orientation the middle of the feature may move
-/// further in the location zone. Effects of the outer part, and outer + share x inner, are not negative.
+/// further in the location zone. On each limit, the effect of the outer part is not negative, nor is the sum of this
+/// effect and share x effect of the inner part.
 struct Within {
   std::size_t inner;  ///< position of the inner part, whose size is bounded
   std::size_t outer;  ///< position of the outer part, which bounds it

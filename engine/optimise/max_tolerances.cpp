@@ -46,7 +46,7 @@ std::optional<Infeasible> find_infeasible(const ToleranceLimits& limits, std::sp
   return worst;
 }
 
-/// The common factors at which the tolerance of some part reaches or leaves a bound, ascending.
+/// Zero, and the common factors at which the tolerance of some part reaches or leaves a bound, ascending.
 std::vector<double> corners(std::span<const double> proportions, std::span<const ToleranceRange> ranges) {
   std::vector<double> factors{0.0};
   for (std::size_t i = 0; i < ranges.size(); ++i) {
@@ -62,7 +62,8 @@ std::vector<double> corners(std::span<const double> proportions, std::span<const
 double factor_of(const ToleranceLimits& limits, std::size_t l, double inside, std::span<const double> proportions,
                  std::span<const ToleranceRange> ranges) {
   double held = 0.0;  // sum of effect x size over the parts at a bound
-  // The sum of effect x size over the other parts, at the factor 1. At another factor it is larger by size_of(factor).
+  // The sum of effect x size over the other parts, at the factor 1. At another factor, this sum is multiplied by
+  // size_of(factor).
   double grows = 0.0;
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const double effect = limits.row(l)[i];

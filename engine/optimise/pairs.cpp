@@ -47,7 +47,7 @@ struct PairGrowth {
   double together = kInfinity;  ///< if the inner part also grows, by share x the growth of the outer part
 };
 
-/// The growth of a pair that keeps its effect on each limit l, as a share of the limit's room, at most most[l].
+/// The largest growth at which the pair uses at most the share most[l] of the room of each limit l.
 PairGrowth pair_growth(const SizedProblem& problem, const Within& pair, std::span<const double> most) {
   PairGrowth growth;
   for (std::size_t l = 0; l < problem.limits; ++l) {

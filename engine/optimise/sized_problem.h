@@ -52,7 +52,8 @@ struct SizedProcess {
 /// the choice of processes.
 std::vector<double> effects_by_room(const AllocationProblem& problem);
 
-/// The share of a limit's room that is left unused, so that no order of additions over the parts breaks the limit.
+/// The share of a limit's room that is left unused, so that rounding does not break the limit, in whatever order the
+/// effects of the parts are added.
 double rounding_margin(std::size_t parts);
 
 /// The scalar product of two vectors, accumulated in eight partial sums.
@@ -65,6 +66,7 @@ struct SizedProblem {
   std::span<const double> effects;     ///< [limits x parts] effects divided by rooms, from effects_by_room()
   std::vector<double> largest_effect;  ///< [parts] largest magnitude of a part's effects over all limits
   std::vector<std::vector<SizedProcess>> processes;  ///< [parts] processes of each part, ascending by lo
+                                                     ///< except for the outer parts of pairs
   /// [limits] 1 for a tight limit, 0 for others. The lowest sizes of the parts use up the room of a tight limit, except
   /// for rounding, so the parts that affect it are fixed at these sizes.
   std::vector<char> tight;

@@ -101,8 +101,9 @@ double truncated_normal_deviation(double sigma, double half_width) {
     const double density = std::exp(-0.5 * a * a) / std::sqrt(2.0 * std::numbers::pi);
     return sigma * std::sqrt(1.0 - 2.0 * a * density / std::erf(a / std::numbers::sqrt2));
   }
-  // For smaller a, digits of the difference under the root cancel. It equals a^2 T / (1 + a^2 T), where T = sum over n
-  // >= 1 of a^(2n-2) / (2n+1)!! is a series of positive terms, because 2 Phi(a) - 1 = 2 a phi(a) (1 + a^2 T).
+  // For smaller a, digits of the difference under the root cancel. The difference equals a^2 T / (1 + a^2 T), where T =
+  // sum over n >= 1 of a^(2n-2) / (2n+1)!! is a series of positive terms, because 2 Phi(a) - 1 = 2 a phi(a) (1 + a^2
+  // T).
   const double a2 = a * a;
   double sum = 0.0;
   double term = 1.0 / 3.0;

@@ -34,9 +34,9 @@ class Distribution {
   /// at least kLeastMeasured values, finite and not all equal.
   static Distribution measured(std::vector<double> values);
 
-  /// A distribution in which each of the given values is equally likely. They are the errors of machines that are given
-  /// in a table instead of drawn. The standard deviation is that of the values (n - 1). There must be at least two
-  /// values, finite and not all equal.
+  /// A distribution in which each of the given values is equally likely. The values are the errors of machines that are
+  /// given in a table instead of drawn. The standard deviation is that of the values (n - 1). There must be at least
+  /// two values, finite and not all equal.
   static Distribution given(std::vector<double> values);
 
   /// The same shape with a shifted mean: half of all errors scatter about -shift, half about +shift (m or rad, >= 0).
@@ -52,8 +52,8 @@ class Distribution {
 
   Shape shape() const { return shape_; }   ///< The shape of the density.
   double sigma() const { return sigma_; }  ///< Sigma of the normal, before truncation; 0 for other shapes.
-  /// The largest possible distance of an error from the centre, without the shift; infinity for a normal that is not
-  /// truncated.
+  /// The largest possible distance of an error from the centre (from 0 for measured and given values), without the
+  /// shift; infinity for a normal that is not truncated.
   double half_width() const { return half_width_; }
   double shift() const { return shift_; }  ///< The shift of shifted(); 0 if there is none.
   /// The largest possible magnitude of an error; infinity for a normal that is not truncated.
@@ -73,8 +73,8 @@ class Distribution {
   /// Precondition: 0 < u < 1.
   double quantile(double u) const;
   void transform(std::span<double> uniforms) const;  ///< Replaces each uniform number u by quantile(u).
-  /// Replaces each normal score z (a standard normal) by the error with the same share of errors below it: centre +
-  /// sigma z for the normal shape, otherwise quantile(Phi(z)).
+  /// Replaces each normal score z (a standard normal) by quantile(Phi(z)), where Phi is the standard normal
+  /// distribution function. For a normal without a shift this is centre + sigma z.
   void transform_scores(std::span<double> scores) const;
 
   /// The given values, ascending; empty for other shapes.

@@ -28,8 +28,8 @@ class NormalCopula {
   std::size_t size() const { return size_; }                            ///< The number of errors, k.
   std::span<const double> correlation() const { return correlation_; }  ///< The correlation matrix R [k x k].
 
-  /// Replaces independent standard normals by scores with the correlation R. rows: one for each error, with all
-  /// samples. Columns stay independent of each other. The result has the same bits on every instruction set.
+  /// Replaces independent standard normals by scores with the correlation R. rows: one for each error, with a score for
+  /// each sample. Samples stay independent of each other. The result has the same bits on every instruction set.
   /// Precondition: k rows of equal length.
   void correlate(std::span<const std::span<double>> rows) const;
 

@@ -69,9 +69,9 @@ constexpr double kMiddle = 0.425;
 }
 
 /// The distance from zero beyond which a share t of the standard normal lies on one side, for t between
-/// kSmallestUniform and 1/2 - kMiddle. It is r - c(r), where r = sqrt(-2 log t) is the leading term for small t. c is a
-/// rational function, fitted by weighted linear least squares with an iterated denominator. The fitted values are the
-/// exact distances to 50 digits at the Chebyshev nodes of the range. The relative error of the fit is 4e-18.
+/// kSmallestUniform and 1/2 - kMiddle. The distance is r - c(r), where r = sqrt(-2 log t) is the leading term for small
+/// t. c is a rational function, fitted by weighted linear least squares with an iterated denominator. The fitted values
+/// are the exact distances to 50 digits at the Chebyshev nodes of the range. The relative error of the fit is 4e-18.
 [[gnu::always_inline]] inline double tail_quantile(double t) {
   constexpr double kAbove[] = {3.5870056229663754,  28.937060576976233,    44.18431979367937,
                                21.389873044820888,  5.5398569809415354,    0.7424741169485692,

@@ -6,10 +6,10 @@
 
 namespace poesy {
 
-/// The distribution of the error of a further part after n parts were measured. It is a mixture with one component for
-/// each measured value v: a uniform on v +- w, with its own half-width w. Mean and standard deviation s (with n - 1)
-/// are those of the measured values: the values alone have the variance (n - 1)/n s^2, and smoothing adds the missing
-/// s^2/n.
+/// The distribution of the error of a further part after n parts were measured. This distribution is a mixture with one
+/// component for each measured value v: a uniform on v +- w, with its own half-width w. Mean and standard deviation s
+/// (with n - 1) are those of the measured values: the values alone have the variance (n - 1)/n s^2, and smoothing adds
+/// the missing s^2/n.
 ///
 /// w is in proportion to the distance of the value from its k-th nearest other value, k = ceil(sqrt(n)) (Breiman,
 /// Meisel and Purcell 1977, Technometrics 19, 135-144). So w is small for values that are close together, 0 for values

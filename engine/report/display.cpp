@@ -113,7 +113,7 @@ std::string response_text(const NamedUnit& response, double si) {
 }
 
 std::string coordinates_text(const StoredResult& result, std::size_t pose) {
-  constexpr double kRounding = 1e-12;  // mm or deg; a curve that returns to zero may miss zero by this rounding error
+  constexpr double kRounding = 1e-12;  // mm or deg; a coordinate below this is rounding error, and is shown as 0
   if (pose >= result.poses.size()) return {};  // a result file may name a pose that does not exist
   std::string text = result.time.empty() ? std::string() : fmt::format("t {} s", number_text(result.time[pose], 4));
   for (std::size_t c = 0; c < result.pose_coordinates.size(); ++c) {

@@ -54,9 +54,9 @@ std::string metric_text(const StoredResult& result);
 /// A value of a response (SI) as text in the unit that results show: "0.05 mm".
 std::string response_text(const NamedUnit& response, double si);
 
-/// The coordinates of a pose in the units that results show, to three significant digits: "z -190 mm, beta 20 deg,
-/// gamma -30 deg". On a trajectory the time comes first: "t 1.18 s, ...". Empty if the result has no pose with this
-/// index.
+/// The coordinates of a pose in the units that results show, to three significant digits, or to whole units from 1000
+/// on: "z -190 mm, beta 20 deg, gamma -30 deg". On a trajectory the time comes first: "t 1.18 s, ...". Empty if the
+/// result has no pose with this index.
 std::string coordinates_text(const StoredResult& result, std::size_t pose);
 /// A pose with its coordinates: "pose 14 (z -190 mm)".
 std::string place_text(const StoredResult& result, std::size_t pose);
@@ -91,12 +91,12 @@ Cell value_cell(double si, const NamedUnit& named, int digits = 4);
 Cell count_cell(std::uint64_t count);  ///< A cell with a whole number, with all its digits.
 Cell percent_cell(double share);       ///< A cell with a share, for a percent_column().
 /// A cell with a sensitivity index, or with an end of its interval. index: value in SI. scale: factor that converts the
-/// index to the number shown. An index whose magnitude is below `rounding` (see index_rounding()) is shown as 0. If
-/// rounding would also hide an index that is large enough to matter (is_too_small_to_tell()), the cell has the text
-/// kTooSmall and no number.
+/// index to the number shown. rounding: magnitude (SI) below which an index is only rounding error of the solver
+/// (index_rounding()) and is shown as 0. If the error is so small that rounding error would also hide an index that
+/// matters (is_too_small_to_tell()), the cell has the text kTooSmall and no number.
 Cell index_cell(double index, double scale, double rounding);
 
-/// The text of an index_cell() if rounding hides the index.
+/// The text of an index_cell() if the index cannot be told from rounding error.
 inline constexpr std::string_view kTooSmall = "rounding";
 
 /// Makes a text for people from the value of a setting as study_setting() gives it: without quotes and braces, with
@@ -110,11 +110,12 @@ bool is_first_order(const StoredResult& result);
 /// The words with which tables and texts mark a result whose samples were all solved to first order.
 inline constexpr std::string_view kFirstOrder = "solved to first order in the errors";
 
-/// The full names ("section.key") and readable values of the settings of a resolved study, without keys outside all
-/// sections, such as the title.
+/// The full names ("section.key") and readable values of the settings of a study. Keys outside all sections, such as
+/// the title, are left out. study_text: the study file (TOML) with all defaults filled in.
 std::vector<std::pair<std::string, std::string>> readable_settings(std::string_view study_text);
 
-/// The value of a key in a section of a resolved study, as a text for people.
+/// The value of a key in a section of a study, as a text for people; empty if the study has no such key. study_text:
+/// see readable_settings().
 std::string readable_setting(std::string_view study_text, std::string_view section, std::string_view key);
 
 }  // namespace poesy

@@ -52,8 +52,8 @@ bool is_between_planes(const StoredResult& result, std::size_t q) {
   return (has(x) || has(lean_x)) != (has(y) || has(lean_y));
 }
 
-/// The cell of a zone. It has a tolerance frame, except for the tolerance of a distance, for a clearance, and if errors
-/// of the feature were measured. q: index of the feature in the result. size: m.
+/// The cell of a zone. It has a tolerance frame (Cell::boxes), except for the tolerance of a distance, for a clearance,
+/// and if errors of the feature were measured. q: index of the feature in the result. size: m.
 Cell zone_cell(const StoredResult& result, std::size_t q, const std::string& key, double size,
                const std::string& datums) {
   if (key != "-" && measured_errors(result, q) > 0) {

@@ -56,8 +56,9 @@ std::size_t significant_digits(std::string_view number) {
   return first == std::string::npos ? 0 : digits.size() - first;
 }
 
-/// Gives the numbers of a column the same number of digits: the largest that a number with a decimal point has. So
-/// "2.63" beside "2.683" becomes "2.630". Only zeros that rounding had removed are added. c: index of the column.
+/// Appends zeros to the numbers of a column, up to the most digits that a number of the column with a decimal point
+/// has. So "2.63" beside "2.683" becomes "2.630". A number gets zeros only if its value, rounded to that many digits,
+/// ends in these zeros. c: index of the column.
 void even_digits(Table& table, std::size_t c) {
   std::size_t most = 0;
   for (const std::vector<Cell>& row : table.rows) {
@@ -75,7 +76,7 @@ void even_digits(Table& table, std::size_t c) {
   }
 }
 
-/// The headings of the columns that are in the whole table, but not in the part.
+/// The headings of the columns of the table `whole` that the table `part` does not have.
 std::vector<std::string> missing_headings(const Table& whole, const Table& part) {
   std::vector<std::string> missing;
   for (const Column& column : whole.columns) {

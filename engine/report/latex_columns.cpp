@@ -17,7 +17,8 @@ namespace {
 constexpr double kPointsPerMillimetre = 72.27 / 25.4;
 /// Width in mm that stays free, because the estimates ignore kerning, which can make words wider.
 constexpr double kReserve = 1.0;
-/// The least width in points of a column of words that is broken into lines, if no single word is wider.
+/// The least width in points of a column of words that is broken into lines, if neither the heading nor a single word
+/// is wider.
 constexpr double kLeastParagraph = 60.0;
 
 bool is_interval(const Column& column) { return heading_of(column) == "low" || heading_of(column) == "high"; }
@@ -97,7 +98,8 @@ Widths widths_of(const Table& table, std::size_t c) {
   return {std::max({word, heading, std::min(natural, kLeastParagraph)}), natural};
 }
 
-/// The width that the columns of a table may have together, points: the table without the gaps between columns.
+/// The width, in points, that is left for the cells of all columns: `millimetres` without kReserve and without the gaps
+/// between columns.
 double room_of(const Table& table, double millimetres) {
   return (millimetres - kReserve) * kPointsPerMillimetre - kColumnGap * static_cast<double>(table.columns.size() - 1);
 }
@@ -142,7 +144,7 @@ Table without_empty_columns(const Table& table) {
   });
 }
 
-/// The table without the units of intervals, which are those of their values.
+/// The table without units in the headings of intervals, because an interval has the unit of its value.
 Table with_short_headings(Table table) {
   for (Column& column : table.columns) {
     if (is_interval(column)) column.unit.clear();
@@ -182,15 +184,15 @@ bool goes_with(const Table& table, std::size_t other, std::size_t left_out) {
   return value_of(table, other) == value_of(table, left_out);
 }
 
-/// Returns true for a number that has its unit in a column of units: one without a unit in its heading, or with a unit
-/// such as "mm/unit".
+/// Returns true for a column of numbers whose units are in a separate column of units: its heading has no unit, or a
+/// unit such as "mm/unit" that refers to the separate column.
 bool needs_unit(const Column& column) {
   const bool has_own = !column.unit.empty() && column.unit.find("unit") == std::string::npos;
   return column.kind == Column::Kind::number && !has_own && !is_interval(column);
 }
 
-/// Returns true for a column of units whose numbers have all been left out. They are to its left, up to the column of
-/// units before, or to its right, up to the next one.
+/// Returns true for a column of units that no number needs any more. The numbers that may need it are in the columns
+/// between the previous and the next column of units.
 bool is_orphan_unit(const Table& table, std::size_t c) {
   const auto is_unit = [](const Column& column) { return heading_of(column) == "unit"; };
   if (!is_unit(table.columns[c])) return false;

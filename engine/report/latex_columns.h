@@ -26,7 +26,8 @@ std::string latex_cell(const Cell& cell, Column::Kind kind);
 
 /// The table with the columns that fit into a width, mm. Columns of words are broken into lines before a column is left
 /// out. The columns are left out in this order:
-/// 1. columns without any value; the headings of intervals lose their units, which are those of the values;
+/// 1. columns without any value; at the same time, the headings of intervals lose their units, because an interval has
+///    the unit of its value;
 /// 2. dispensable columns, the most dispensable first, except limits and values;
 /// 3. the other columns, the rightmost first, but limits, values, units and intervals after all others.
 /// The first column and the first number that are not dispensable always stay. An interval is left out with its value,

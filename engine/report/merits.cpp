@@ -118,15 +118,16 @@ std::vector<Cell> row_of(const Merit& first, const Merit& merit, std::size_t res
 }
 
 /// The factor by which the number of samples must grow until the interval of this change excludes zero, if the change
-/// keeps its value. The width of an interval falls with the square root of the number of samples. NaN if the change is
-/// zero or exact.
+/// keeps its value. The width of an interval is inversely proportional to the square root of the number of samples. NaN
+/// if the change is zero or exact.
 double times_as_many(const MeritChange& change) {
   const double nearer = change.value > 0.0 ? change.value - change.low : change.high - change.value;
   return change.value == 0.0 || change.low == change.high ? kNaN : std::pow(nearer / change.value, 2);
 }
 
-/// A note on how many more samples would show whether a result is better than the first one. Empty if this is already
-/// certain, or if more samples do not help.
+/// A note on how many more samples would show whether a result is better than the first one, or that no number of
+/// samples would show it. Empty if the verdict is not Change::not_told_apart, or if more samples do not make the
+/// intervals narrower (Merit::narrows).
 std::string remedy_text(const Merit& first, const Merit& merit, std::size_t result) {
   constexpr double kTooMany = 1e4;
   const MeritChange change = change_of(first, merit);
@@ -145,7 +146,7 @@ std::string remedy_text(const Merit& first, const Merit& merit, std::size_t resu
 
 /// The shares of machines within each limit as figures of merit. Empty if machines are not judged, or by one limit
 /// only, because then the share within it is the yield. If errors are drawn from measured parts, the shares have no
-/// intervals, because those of Clopper and Pearson would leave out the uncertainty from the small number of parts.
+/// intervals, because Clopper-Pearson intervals would leave out the uncertainty from the small number of parts.
 std::vector<Merit> limit_merits(const StoredResult& result) {
   if (!result.verdicts || !result.verdicts->yield || result.verdicts->limits.size() < 2) return {};
   const YieldVerdict& yield = *result.verdicts->yield;
@@ -173,7 +174,7 @@ std::string merits_caption(std::span<const std::vector<Merit>> results, const st
   return fmt::format("Which is better: no verdict on the {}, because the {} differ", first, topics_text(others));
 }
 
-/// Tells whether the poses of two results come from tables: yes, if those of at least one of them do.
+/// Returns PosesFrom::table if the poses of at least one of two results come from a table.
 PosesFrom poses_from(const ReportKind& kind, const StoredResult& a, const StoredResult& b) {
   return kind.words(a).own_poses && kind.words(b).own_poses ? PosesFrom::study : PosesFrom::table;
 }
@@ -283,7 +284,7 @@ std::string merit_sentences(const std::vector<Merit>& a, const std::vector<Merit
     const Merit* other = find(b, merit.what);
     if (other == nullptr) continue;
     const bool is_of_limit = merit.what.starts_with(kLimitMerit);
-    if (is_of_limit && change_of(merit, *other).verdict > Change::worse) continue;  // the table has it
+    if (is_of_limit && change_of(merit, *other).verdict > Change::worse) continue;  // only in merits_table()
     if (other->others.empty()) {
       sentences.push_back(sentence(merit, *other, letter));
     } else {

@@ -6,9 +6,10 @@
 
 namespace poesy {
 
-/// A sentence that recommends a sweep. It applies to two results of the same mechanism that both have a yield, if their
-/// studies differ only in the values of keys that both state: a sweep judges the same machines in both designs, so the
-/// interval of the difference is narrower. Empty for other results. letter: the letter of result b.
+/// A sentence that recommends a sweep instead of two runs: a sweep judges the same machines in both designs, so the
+/// interval of the difference of the yields is narrower. Empty unless both results have a yield and the same mechanism,
+/// and their studies differ only in values of keys that both studies state and that are not requirements
+/// (required_by()). letter: the letter of result b.
 std::string sweep_text(const StoredResult& a, const StoredResult& b, char letter);
 
 }  // namespace poesy

@@ -15,13 +15,14 @@
 
 namespace poesy {
 
-/// Facts that a kind of study states about a study, from its result. Reports use them in the sentences that describe
-/// the run.
+/// Facts about the study of one result, which depend on the kind of study. Reports use these facts in the sentences
+/// that describe the run.
 struct StudyWords {
   bool draws = false;        ///< true if errors were drawn from distributions
   bool from_tables = false;  ///< true if errors, or measurements of them, came from a table
   bool own_poses = true;     ///< true if the study selects the poses, false if they came from a table
-  /// True if errors were fitted to measurements. The poses of the result are then those of a prediction.
+  /// True if errors were fitted to measurements. The poses of the result are then those at which the remaining pose
+  /// errors are predicted.
   bool fitted = false;
   std::string samples = {};  ///< number of samples at each pose, as text; empty: the number that the study states
   std::vector<std::string> sizes = {};  ///< sizes of the errors as text, if the errors are not drawn
@@ -37,8 +38,8 @@ struct MethodWords {
   std::vector<std::string_view> sources = {};  ///< publications behind the method, as BibTeX (report/sources.h)
 };
 
-/// What a report needs from a kind of study. Each kind of study has one such object. A member that is null has no
-/// effect.
+/// What a report needs from a kind of study. Each kind of study has one such object. Members with the default nullptr
+/// are optional.
 struct ReportKind {
   SolveTally (*tally)(const StoredResult&);                                ///< how the solves ended
   std::vector<Table> (*tables)(const StoredResult&, const TableOptions&);  ///< makes the tables that only this kind has
@@ -74,8 +75,8 @@ struct ReportKind {
 };
 
 /// The tables of a result of this kind: the limits (unless the kind's own tables include them), the kind's own tables,
-/// the features of the drawing behind the first of these tables, the errors drawn from measured parts, the errors with
-/// a stated mean or new draws at each pose, and the convergence of adaptive samples.
+/// the features of the drawing (placed after the first table), the errors drawn from measured parts, the errors with a
+/// stated mean or new draws at each pose, and the convergence of adaptive samples.
 std::vector<Table> result_tables(const ReportKind& kind, const StoredResult& result, const TableOptions& options);
 
 /// The report of one result, or the comparison of two or more, as one HTML document that needs no other file. It says

@@ -53,7 +53,8 @@ std::map<std::string, std::string> required_settings(const StoredResult& result,
   return list;
 }
 
-/// Returns true if a setting of the poses is a reason why the poses of two results differ. in_a, in_b: its values.
+/// Returns true if a setting of the poses is a reason why the poses of two results differ. in_a, in_b: values of the
+/// setting in the results.
 bool explains_poses(const std::string& name, const std::string& in_a, const std::string& in_b) {
   if (required_value(name, in_a) != required_value(name, in_b)) return true;
   // The content of a file may have changed under the same name. If only the numbers of points differ, they are the
@@ -67,7 +68,7 @@ bool is_per_pose(const StoredResult& of, std::size_t p) {
   return !of.factor_draws.empty() && of.factor_draws[p] == name(Draws::per_pose);
 }
 
-/// Adds the errors that both results have, but that only one of them draws anew at each pose.
+/// Adds to `others` the errors that both results have, but that only one of the results draws anew at each pose.
 void add_draws_of_errors(const StoredResult& a, const StoredResult& b, std::vector<OtherRequirement>& others) {
   std::vector<std::string> only_in_a;
   std::vector<std::string> only_in_b;

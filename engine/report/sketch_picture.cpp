@@ -55,8 +55,8 @@ std::string numbers_of(std::span<const SketchVector> points) {
 
 double dot(const SketchVector& a, const SketchVector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// The corners of the convex hull of points that lie near a plane, in their order along the hull. Points on one line
-/// are returned unchanged.
+/// The corners of the convex hull of points that lie near a plane, in their order along the hull. Points on one line,
+/// and fewer than four points, are returned unchanged.
 std::vector<SketchVector> hull_of(const std::vector<SketchVector>& points) {
   if (points.size() < 4) return points;
   SketchVector centre{};
@@ -137,7 +137,7 @@ class Drawing {
     text_ += svg_path(pixels, fmt::format("{} {}", points_attribute(points), attributes));
   }
 
-  /// Adds SVG content whose origin is the pixel of this point.
+  /// Adds SVG content, and moves its origin to the pixel at which `point` (m, base frame) is seen.
   void add_group(const SketchVector& point, std::string_view attributes, std::string_view content) {
     const Pixel pixel = view_->at(point);
     text_ += fmt::format("<g transform=\"translate({:.1f} {:.1f})\" {} {}>{}</g>\n", pixel.x, pixel.y,
@@ -148,8 +148,8 @@ class Drawing {
     add_group(point, attributes, svg_text(offset, what));
   }
 
-  /// Draws the axes of the base frame, the bodies with lines to their joints, the platform's origin, the tool and the
-  /// named points.
+  /// Draws the axes of the base frame, the outlines of the bodies through their joints, and lines from the platform's
+  /// origin to the tool and to the named points.
   void bodies() {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       SketchVector end{};
@@ -203,8 +203,8 @@ class Drawing {
     return points;
   }
 
-  /// The point from which lines to a body's joints are drawn: the body's origin, but for the base the middle of the
-  /// joints there.
+  /// The point from which lines to a body's joints are drawn: the origin of the platform or of another body, but for
+  /// the base the mean position of its joints.
   SketchVector middle_of(std::size_t body) const {
     if (body == kPlatform) return sketch_->platform;
     if (body != kBase) return sketch_->bodies[body].origin;

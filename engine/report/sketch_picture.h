@@ -10,8 +10,9 @@
 
 namespace poesy {
 
-/// Shares of the errors (or forces), summed for each link and joint of the mechanism. A link is between two consecutive
-/// joints of a limb, between the base and the first joint, or between the last joint and the platform.
+/// Shares of the errors, summed for each link and joint of the mechanism. In a picture of forces, each link and joint
+/// has the force of its limb (SI) instead of a share. A link is between two consecutive joints of a limb, between the
+/// base and the first joint, or between the last joint and the platform.
 struct PartShares {
   std::vector<std::vector<double>> links;   ///< [limbs][joints + 1] share of each link
   std::vector<std::vector<double>> joints;  ///< [limbs][joints] share of the errors between the axes of each joint

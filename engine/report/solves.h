@@ -11,7 +11,8 @@
 /// How the solves of a result ended, and when a reader is warned of solves that did not converge.
 namespace poesy {
 
-/// The share of samples without a solution above which statistics over the solved samples mislead (decision D8).
+/// The share of samples without a solution above which statistics over the solved samples mislead
+/// (engine/docs/decisions/0008-which-samples-count.md).
 inline constexpr double kManyNotConverged = 0.01;
 
 /// The share of samples without a solution above which a reader is warned: `allowed`, the share that the study allows
@@ -57,8 +58,8 @@ struct SecondFidelity {
   std::size_t errors = 0;           ///< number of all errors
 };
 
-/// A number of samples as text: "2 000 solves", or "2 000 samples" if the responses of some of them were computed from
-/// a series without a solve. by_series: number of the samples without a solve.
+/// A number of samples as text: "2 000 solves", or "2 000 samples" if the responses of some samples were computed from
+/// certified series instead of solves (engine/run/series_model.h). by_series: number of these samples.
 std::string counted_samples(std::uint64_t count, std::uint64_t by_series);
 
 /// Counts of how solves ended, by row and pose. A row is an error, a case, a size of the errors, or a design of a
@@ -71,7 +72,7 @@ struct SolveTally {
   std::optional<SecondFidelity> second = std::nullopt;  ///< set if the result compares two fidelities
 
   SolveCounts total() const;                   ///< The counts over all rows and poses, at the first fidelity.
-  std::size_t cells_by_series() const;         ///< The number of `cells` with samples from a series.
+  std::size_t cells_by_series() const;         ///< The number of `cells` with samples from certified series.
   std::vector<double> shares() const;          ///< [rows x poses] share_not_converged() of each cell.
   std::vector<double> shares_by_row() const;   ///< [rows] share_not_converged() over all poses.
   std::vector<double> shares_by_pose() const;  ///< [poses] share_not_converged() over all rows.
@@ -89,9 +90,10 @@ std::string at_first_fidelity(const SolveTally& tally);
 /// above kManyNotConverged, and the rows and poses with the largest shares.
 std::string unsolved_text(const StoredResult& result, const SolveTally& tally);
 
-/// Lines on the number of solves that did not converge; of both fidelities if there are two. For a result with samples,
-/// also the address of the first failure and the command that replays it. path: path of the result. All lines but the
-/// command are wrapped at `width` by prose_of(). Empty if the result does not count how its solves ended.
+/// Lines on the number of solves that did not converge, for both fidelities if the result compares two. For a result
+/// that lists failures, also the error, pose and sample of the first failure, and the command that replays it. path:
+/// path of the result. All lines but the command are wrapped at `width` by prose_of(). Empty if the result does not
+/// count how its solves ended.
 std::string failures_text(const StoredResult& result, const SolveTally& tally, const std::string& path,
                           std::size_t width);
 

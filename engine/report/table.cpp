@@ -60,7 +60,7 @@ std::size_t total_width(const std::vector<const TextColumn*>& columns) {
 }
 
 /// Removes dispensable columns until the remaining ones fit into `width`. Returns the headings that name the removed
-/// groups of columns, from left to right.
+/// groups of columns (Column::dispensable), the group that was removed last first.
 std::vector<std::string> make_room(std::vector<const TextColumn*>& columns, std::size_t width) {
   const auto dispensable = [](const TextColumn* one) { return one->column.dispensable; };
   std::vector<std::string> left_out;

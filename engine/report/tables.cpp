@@ -42,8 +42,8 @@ std::string rule(const LimitVerdicts& verdicts) {
       percent_text(verdicts.share));
 }
 
-/// The row of errors and the pose at which the value of a limit was found, in words; empty if the value is taken over
-/// all poses together.
+/// The row of errors and the pose with the value that is compared with a limit, in words; empty if this value is taken
+/// over all poses together.
 std::string place(const StoredResult& result, const LimitVerdict& verdict) {
   if (!verdict.pose) return {};
   const bool named = verdict.row && !result.row_names.empty();
@@ -95,8 +95,8 @@ Cell end_cell(double end, const NamedUnit& response) {
   return number_cell((std::isfinite(end) ? end : kNaN) / display(response).si, kDigits);
 }
 
-/// The cell of a value beside its limit. The value has as many digits as the limit if with fewer it would look equal to
-/// the limit.
+/// The cell of a value that is shown beside its limit. The value has as many digits as the limit (kDigits) if with
+/// fewer digits it would look equal to an end of the limit.
 Cell value_beside(double value, const ValueLimit& limit, const Unit& unit) {
   const auto reads_as = [&](double end) { return number_text(value / unit.si) == number_text(end / unit.si); };
   const bool is_near = reads_as(limit.to()) || reads_as(limit.from());
@@ -133,7 +133,7 @@ constexpr double kUsualYield = 0.9973;
 constexpr std::size_t kMostShown = 5;
 
 /// The indices, in an array [responses x slots], of those quantities whose intervals did not become as narrow as the
-/// study asks for, the widest interval first. Only the responses in Settling::responses count.
+/// study asks for, the widest interval first. Responses that are not in Settling::responses are left out.
 std::vector<std::size_t> not_reached(const ConvergenceResult& found, const Settling& settling) {
   const std::size_t slots = found.samples.size();
   std::vector<std::size_t> list;

@@ -28,10 +28,10 @@ std::string constant_text(const NamedUnit& response);
 /// The given indices of responses in the same order, except that those of responses that do not vary come last.
 std::vector<std::size_t> varying_first(const StoredResult& result, std::vector<std::size_t> responses);
 
-/// The response by which errors are ranked by default. The candidates are the headline's responses that vary, or all of
-/// the headline's responses if none varies. The first candidate is taken if it has a limit, or is the displacement of
-/// the tool or the platform. Otherwise the first candidate that is a length is taken, or the first candidate if none is
-/// a length. Empty if the headline is empty.
+/// The response by which errors are ranked by default. The candidates are the responses of StoredResult::headline that
+/// vary, or all of them if none varies. The first candidate is taken if it has a limit, or is the displacement of the
+/// tool or the platform. Otherwise the first candidate that is a length is taken, or the first candidate if none is a
+/// length. Empty if StoredResult::headline is empty.
 std::string default_ranking(const StoredResult& result);
 
 /// The order in which tables show ranked errors.
@@ -131,7 +131,7 @@ std::string ranked_text(char letter, const RankedResult& ranked, std::string_vie
 /// The summary and the tables of a result as one JSON object, for programs:
 ///
 /// - kind, model, title, poesy_version, git_commit, content_sha256
-/// - metric: name, null if nothing is weighed; metric_points: [[x, y, z]] in m, null if the metric has none
+/// - metric: name, null if the mechanism has no metric; metric_points: [[x, y, z]] in m, null if the metric has none
 /// - seed, null if the study has none; poses: their number
 /// - candidate_poses: number, null if not known; rejected_poses: [{reason, count}]
 /// - errors, responses: [{name, unit (SI), description}]
@@ -139,9 +139,9 @@ std::string ranked_text(char letter, const RankedResult& ranked, std::string_vie
 /// - run: created, threads, wall_seconds
 /// - tables: [{name, caption, columns: [{name, heading, unit, kind}], rows, shown, notes}]
 ///
-/// A row of `rows` has a value for the name of each column. Numbers are in the column's unit and read back as the same
-/// double, null if there is none; text is unchanged. `shown` has the texts of the same cells, a list for each row.
-/// Invalid UTF-8 is replaced. solves: how all solves of the result ended.
+/// Each row of `rows` is an object that has a value under the name of each column. A number is in the unit of its
+/// column, and reads back as the same double; it is null if the cell has none. Text is unchanged. `shown` has the texts
+/// of the same cells, a list for each row. Invalid UTF-8 is replaced. solves: how all solves of the result ended.
 std::string json_of(const StoredResult& result, const SolveCounts& solves, std::span<const Table> tables);
 
 /// The comparison of two or more results of one kind.

@@ -79,8 +79,8 @@ CsvTable lines_of_factors(const StoredResult& result, std::string name);
 /// A table with a line for each pose, and no columns of numbers yet.
 CsvTable lines_of_poses(const StoredResult& result, std::string name);
 
-/// A column with get(element) for each element of a list; by default the elements themselves. Keeps a reference to the
-/// list.
+/// A column with get(element) for each element of a list; by default the elements themselves. The column keeps a
+/// reference to the list.
 template <class List, class Get = std::identity>
 CsvColumn list_column(std::string heading, const List& list, Get get = {}) {
   return {std::move(heading),
@@ -94,15 +94,15 @@ CsvColumn field_column(std::string heading, const FieldRow<Found>& field, const 
           [&field, &found, first](std::size_t line) { return number_at(field, found, first + line); }};
 }
 
-/// A column of the elements of a field at one index on its first axis. at: that index.
+/// A column of those elements of a field that have the index `at` on its first axis.
 template <class Found>
 CsvColumn field_row_column(std::string heading, const FieldRow<Found>& field, const Found& found, std::size_t at) {
   return {std::move(heading),
           [&field, &found, at](std::size_t line) { return field.member->number_in_row(found, at, line); }};
 }
 
-/// Columns for the poses, from an array whose last two axes are those of the lines and of the poses. at: indices on the
-/// other axes, which come before.
+/// A column for each pose, from an array whose last two axes belong to the lines and to the poses. at: indices on the
+/// axes before these two.
 template <class T, NamedAxis... Axes, std::integral... Positions>
 CsvPoseColumns pose_columns(const Array<T, Axes...>& array, std::string unit, Positions... at) {
   return {array.template length<axis::Pose>(), std::move(unit),

@@ -14,7 +14,7 @@ using Feature = Axis<"feature">;  ///< The features of a drawing, over all limbs
 }  // namespace axis
 
 /// The first-order effect of the features of a drawing on the responses, if the features scatter in their tolerance
-/// zones; SI. A feature counts if the study varies its errors; errors that belong to no feature do not count. Values
+/// zones; SI. Features whose errors the study does not vary, and errors that belong to no feature, are left out. Values
 /// are NaN for a response that is neither signed nor the norm of signed responses, and if a pose is not solved.
 struct DrawingResult {
   /// A text for each feature.
@@ -31,9 +31,9 @@ struct DrawingResult {
   Array<std::uint64_t, axis::Feature> limb;  ///< number of the limb, from 1
   Texts kind;                                ///< kind of feature: "axis", "rectangle", "round", "point" or "distance"
   Sizes length;                              ///< m, length of an axis, first side or diameter of a face; else 0
-  Texts location;            ///< zone of location: its key, "tolerance" for a distance, or "clearance"; "-": none
-  Sizes location_zone;       ///< m, width or diameter of the zone of location; for a distance its tolerance +-; for a
-                             ///< clearance the largest value
+  Texts location;       ///< zone of location: its key, "tolerance" for a distance, or "clearance"; "-": none
+  Sizes location_zone;  ///< m, width or diameter of the zone of location; t for a distance with the tolerance +-t; for
+                        ///< a clearance the largest value
   Texts location_datums;     ///< datums of the zone of location: "A|B"; "-": none
   Texts orientation;         ///< key of the zone of orientation; "-": none
   Sizes orientation_zone;    ///< m, width or diameter of the zone of orientation on the drawing
@@ -49,7 +49,8 @@ struct DrawingResult {
   /// Like `rms`, but if a feature has no zone of orientation, its zone of location is used by the middle alone or by
   /// the tilt alone, whichever is worse.
   AtPoses rms_worst_division;
-  AtPoses worst_case;      ///< largest magnitude of the response with all features in their zones
+  /// Largest magnitude of the response with all features in their zones; for a norm, the largest one that was found.
+  AtPoses worst_case;
   OfFeatures worst_share;  ///< share of each feature in worst_case, at the pose where worst_case is largest
 
   std::size_t features() const { return names.size(); }  ///< The number of features.

@@ -257,15 +257,17 @@ class Member {
  public:
   virtual ~Member() = default;
   /// Adds to the result file a dataset with the elements of the member of one object, or with one element for each of
-  /// several objects (things). Returns false if an array is empty and therefore not written.
+  /// several objects (things). Returns false if nothing was written, because the member is empty
+  /// (Presence::where_computed).
   virtual bool write(ResultBuilder& result, const Place& place, std::span<const Found> things) const = 0;
-  /// Reads the member of each thing. Throws h5::Error if the dataset is missing or has another shape.
+  /// Reads the member of each object in `things`. Throws h5::Error if the dataset is missing or has another shape.
   virtual void read(const h5::File& file, const std::string& path, const Axes& axes, std::span<Found> things) const = 0;
-  virtual void clear(Found& found) const = 0;                           ///< Empties the member if it is a list.
+  virtual void clear(Found& found) const = 0;  ///< Empties the member if it is a list or an Array.
   virtual Number number(const Found& found, std::size_t at) const = 0;  ///< The element at this index, row-major.
   /// The element at index `within` of one row of the member's elements. row: index of the row on the first axis.
   virtual Number number_in_row(const Found& found, std::size_t row, std::size_t within) const = 0;
-  virtual std::size_t element_bytes() const = 0;  ///< Size of one element in bytes, in memory and in a file alike.
+  /// The size of one element in bytes; for a number the same in memory and in a file.
+  virtual std::size_t element_bytes() const = 0;
 };
 
 /// Reads and writes a member of type `Value`: an Array, a std::vector, or a single value.
@@ -341,7 +343,7 @@ struct Attribute {
 
 /// Describes a dataset in a group of a result file by the member of `Found` that has its numbers. If the member is an
 /// Array, its axes are those of the dataset. If the member is a single value, the dataset is a scalar, or has one
-/// element for each thing of a list along a named axis.
+/// element for each object of a list, along a named axis.
 template <class Found>
 struct FieldRow {
   /// Describes a dataset from an Array or a single value.
@@ -393,8 +395,8 @@ struct Group {
 };
 
 /// Adds one dataset to a group, with the elements of one object, or with one element for each of several objects
-/// (things). Returns false if an array is empty and therefore not written. Precondition: members that are lists occur
-/// only with a single object.
+/// (things). Returns false if nothing was written, because the member is empty (Presence::where_computed).
+/// Precondition: members that are lists occur only with a single object.
 template <class Found>
 bool write_field(ResultBuilder& result, const std::string& group, const FieldRow<Found>& field,
                  std::span<const Found> things) {
@@ -487,8 +489,8 @@ void read_group(const h5::File& file, const Group<Found>& group, Found& found) {
   read_fields(file, group.path, group.fields, found);
 }
 
-/// The size of all elements of these datasets in bytes, in memory and in a file alike. lengths: the lengths of all
-/// their axes.
+/// The size of all elements of these datasets in bytes; for numbers the same in memory and in a file. lengths: the
+/// lengths of all their axes.
 template <class Found>
 std::size_t bytes_of(const Fields<Found>& fields, const AxisLengths& lengths) {
   std::size_t bytes = 0;

@@ -5,9 +5,9 @@
 namespace poesy {
 
 /// Orders StoredResult::headline (the responses that a summary shows), and adds to it the responses with limits that it
-/// lacks. Responses with limits come first, those whose limit is missed most often before the others. They are followed
-/// by the displacement of the tool, the displacement of the platform, and the remaining responses. Otherwise the order
-/// stays as it was. Precondition: StoredResult::verdicts is set, if the study has limits.
+/// lacks. Responses with limits come first, those whose limit is missed most often before the others. Then come the
+/// displacement of the tool, the displacement of the platform, and the remaining responses in their order so far.
+/// Precondition: StoredResult::verdicts is set, if the study has limits.
 void order_headline(StoredResult& result);
 
 }  // namespace poesy

@@ -71,7 +71,7 @@ struct MeasuredErrors {
   std::vector<std::size_t> factors;    ///< [errors] indices in StoredResult::factors
   std::vector<std::uint64_t> parts;    ///< [errors] number of measured parts
   std::vector<double> mean;            ///< [errors] mean of the parts, and also of the draws
-  std::vector<double> sigma_of_parts;  ///< [errors] standard deviation of the n parts, with the divisor n - 1
+  std::vector<double> sigma_of_parts;  ///< [errors] standard deviation of the parts, with the divisor `parts` - 1
   std::vector<double> sigma;           ///< [errors] standard deviation of the draws
   std::vector<double> least_part;      ///< [errors] smallest value of the parts
   std::vector<double> greatest_part;   ///< [errors] largest value of the parts
@@ -136,7 +136,7 @@ struct StoredResult {
 /// The content_sha256 of a result; empty if the file was changed after it was written.
 std::string valid_hash(const StoredResult& result);
 
-/// StoredResult::found in its own type. Precondition: it has the type `Found`.
+/// StoredResult::found as an object of the type `Found`. Precondition: it has this type.
 template <class Found>
 const Found& found_of(const StoredResult& result) {
   POESY_EXPECTS(result.found.type() == typeid(Found));
@@ -165,11 +165,11 @@ struct Verification {
 /// Computes the content hash of a result file. Throws FileError if the file cannot be read.
 Verification verify_result(const std::string& path);
 
-/// Writes every table of a result as a CSV file into a folder, which is made if missing. Unchanged tables of an earlier
-/// result are replaced (OutputFolder). The first line of a file has the column names with their units;
-/// engine/docs/result-file.md lists them. Most tables have text only in the first column, such as names of errors. So
-/// in Octave `t = importdata('global.csv', ',', 1)` gives t.data and t.rowheaders. Returns the paths of the files.
-/// Throws FileError, and InputError if a file that would be replaced is not poesy's or was changed.
+/// Writes every table of a result as a CSV file into a folder, which is made if missing. Tables of an earlier result
+/// are replaced if the user did not change them (OutputFolder). The first line of a file has the column names with
+/// their units; engine/docs/result-file.md lists them. Most tables have text only in the first column, such as names of
+/// errors. So in Octave `t = importdata('global.csv', ',', 1)` gives t.data and t.rowheaders. Returns the paths of the
+/// files. Throws FileError, and InputError if a file that would be replaced is not poesy's or was changed.
 std::vector<std::string> export_tables(const StoredResult& result, const FileKind& kind, const std::string& folder);
 
 }  // namespace poesy

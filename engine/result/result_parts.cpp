@@ -137,8 +137,8 @@ constexpr std::string_view kLimitsMeaning =
     "any "
     "row of errors";
 
-/// The datasets of /convergence that describe how the course of estimates ended, with a number for each quantity or for
-/// each varied error (slot). They are written after the datasets of the course itself.
+/// The datasets of /convergence that describe how the adaptive sampling ended, with a number for each estimated
+/// quantity or for each varied error (slot). They are written after the datasets of the estimates (EstimateCourse).
 Fields<ConvergenceResult> end_fields(const CourseWords& words) {
   // all: the axes of the quantities, followed by the axis of the numbers of samples.
   const Axes& all = words.group.fields.front().axes;

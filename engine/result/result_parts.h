@@ -51,8 +51,9 @@ std::string unit_of(const Thing& thing) {
 /// of a file name or of a cell of a table. path: path of the dataset with the names, for the message.
 void check_names(std::span<const std::string> names, const std::string& path);
 
-/// Writes a file with the data that all files have: attributes of the root, /study, /poses, and /run with facts of the
-/// run. compose(result): adds all other data. filetype, kind: attributes of the root. Throws FileError.
+/// Writes a file with the data that all files have: attributes of the root, /study, /mechanism (if the mechanism is
+/// from a file), /poses, and /run with facts of the run. compose(result): adds all other data. filetype, kind:
+/// attributes of the root. Throws FileError.
 void compose_file(const std::string& path, std::string_view filetype, std::string_view kind, const Study& study,
                   const SelectedPoses& poses, const RunFacts& facts,
                   const std::function<void(ResultBuilder&)>& compose);
@@ -85,14 +86,14 @@ std::vector<std::size_t> constant_responses(std::span<const std::uint8_t> varies
 /// The number of statuses that every result lists, the first of kStatusNames.
 inline constexpr std::size_t kLeastStatuses = 5;
 /// The statuses that a result lists: the first of kStatusNames up to the last one with which a sample ended, but at
-/// least kLeastStatuses. So a result whose samples have only the older statuses has the same bits as before the newer
-/// ones existed.
+/// least kLeastStatuses. So a result that has only the first kLeastStatuses statuses has the same bits as before poesy
+/// had the other statuses.
 std::vector<std::string> listed_statuses(const SolveCounts& solves);
 /// The number of statuses on the axis /status. Throws h5::Error if their names differ from kStatusNames.
 std::size_t listed_statuses(const h5::File& file);
 
-/// Adds to the result file the group /solver, which counts how the solves of each cell (varied error at a pose, or
-/// pose) ended. axes: axes of the cells.
+/// Adds to the result file the group /solver, which counts how solves ended. A cell is a varied error at a pose, or all
+/// errors at a pose. solves: counts of each cell, row-major. axes: axes of the cells.
 void add_solver(ResultBuilder& result, const Axes& axes, std::span<const SolveCounts> solves);
 /// Adds to the result file the group /solver for an array of cells.
 template <class... A>
@@ -132,7 +133,7 @@ std::optional<LimitVerdicts> read_limits(const h5::File& file, const StoredResul
 /// Adds to `tables` the table limits.csv; nothing if the study states no limits.
 void append_limit_table(CsvTables& tables, const StoredResult& result);
 
-/// The attribute with the confidence level of the intervals in a course of estimates.
+/// The attribute with the confidence level of the intervals in an EstimateCourse.
 inline const std::vector<Attribute<EstimateCourse>> kCourseLevel{{"conf_level", &EstimateCourse::conf_level}};
 
 /// The names and descriptions of the datasets and tables of a course of estimates (EstimateCourse).
@@ -158,8 +159,8 @@ void add_course(ResultBuilder& result, const CourseWords& words, const EstimateC
 /// Reads the course that add_course() wrote.
 EstimateCourse read_course(const h5::File& file, const CourseWords& words);
 /// Adds to `tables` a table for each response, with a line for each varied error (slot) and each number of samples.
-/// ends: [slots] the final number of samples at each pose; empty if all slots reached the end of the course. The tables
-/// refer to the arguments, which must outlive them.
+/// ends: [slots] the final number of samples at each pose; empty if every slot has estimates after all numbers of
+/// samples. The tables refer to the arguments, which must outlive them.
 void append_course_tables(CsvTables& tables, const StoredResult& result, const CourseWords& words,
                           const EstimateCourse& found, std::span<const std::uint64_t> ends);
 

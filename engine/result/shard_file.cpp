@@ -116,7 +116,7 @@ void check_all_there(std::span<const StoredShard> shards) {
                    "run them with --shard and merge all of them");
 }
 
-/// Joins the states of one stage (a call of `fold`) from all shards, in the order of the shards, and removes them from
+/// Joins the states of one stage (Checkpoints) from all shards, in the order of the shards, and removes them from
 /// `shards`.
 Bytes take_state(std::span<StoredShard> shards, std::size_t stage) {
   std::size_t bytes = 0;

@@ -12,7 +12,7 @@
 namespace poesy {
 
 /// The content of a shard file. It is an HDF5 file with /study, /poses and /run as in a result. The group /shard has
-/// the states of the shard's stages (calls of `fold`), which only the program that wrote them can read.
+/// the states of the shard's stages (Checkpoints), which only the program that wrote them can read.
 struct StoredShard {
   std::string path;            ///< path of the file
   std::string poesy_version;   ///< exact version of the program: no other version can read the states

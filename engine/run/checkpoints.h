@@ -33,14 +33,15 @@ class Checkpoints {
   /// Checkpoints that are never saved, for a run that will not be continued.
   Checkpoints() = default;
   /// stages: the states that an earlier run saved; empty for a new run. fetch: if given, a state of more than
-  /// most_in_memory bytes is not kept in memory but read by fetch, which until the first save must return `stages`.
+  /// most_in_memory bytes is not kept in memory but read by fetch. Until the first save, fetch must return the states
+  /// in `stages`.
   Checkpoints(Due due, Save save, std::vector<Bytes> stages = {}, Fetch fetch = {},
               std::size_t most_in_memory = kMostStateInMemory);
 
   /// Begins the next stage. Returns the state that an earlier run saved for it; empty if there is none.
   Bytes begin();
-  /// Writes a checkpoint if one is due; called after a merge. state: in this function and those below, it writes the
-  /// state of the stage that began last.
+  /// Writes a checkpoint if one is due; called after a merge. state, in this function and those below: a function that
+  /// writes the state of the stage that began last.
   void merged(const ByteSource& state) {
     if (due_ && due_()) save(state);
   }

@@ -11,8 +11,8 @@
 namespace poesy {
 namespace {
 
-/// The largest magnitude to expect of an error: |mean| plus four standard deviations, which one of 16 000 normal draws
-/// exceeds, but not more than the largest value of the distribution.
+/// The largest magnitude to expect of an error: |mean| plus four standard deviations, which about one of 16 000 normal
+/// draws exceeds, but not more than the largest value of the distribution.
 double expected_range(const Distribution& distribution) {
   return std::min(distribution.largest(), std::abs(distribution.mean()) + 4.0 * distribution.standard_deviation());
 }

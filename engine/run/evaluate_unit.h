@@ -74,8 +74,8 @@ void ends_state(Archive& archive, std::span<SolveCounts> solves, std::span<Faile
 /// multiples of it, so each of them is the end of a unit. Empty if the number of samples is adaptive.
 std::vector<std::size_t> history_points(const Plan& plan);
 
-/// Those of the history_points() that are below unit.count, if the unit has the first samples of an error at its pose;
-/// none for later units. The result refers to `points`.
+/// For the unit with the first samples of an error at a pose: the elements of `points` (history_points()) below
+/// unit.count. For later units: none. The result refers to `points`.
 std::span<const std::size_t> points_within(const WorkUnit& unit, std::span<const std::size_t> points);
 
 /// The largest number of poses at which a sensitivity study solves again to check an assumption, such as linearity.

@@ -151,7 +151,8 @@ std::size_t number_of_rows(const EvaluationResult& found, Pairing pairing) {
 /// How one row of errors (a machine) compares with one limit.
 struct JudgedRow {
   bool within = false;
-  /// Number that is compared with the limit, from the poses whose solves count (counts()); NaN if no solve counts.
+  /// Number that is compared with the limit, from the poses whose solves count in statistics (counts()); NaN if there
+  /// is no such pose.
   double value = kNaN;
   std::optional<std::size_t> pose = std::nullopt;  ///< pose at which `value` occurs, if it is the value at one pose
 };

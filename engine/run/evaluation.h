@@ -51,9 +51,9 @@ std::optional<EvaluationResult> run_evaluation(const Model& model, const SolverO
                                                Outcomes outcomes = Outcomes::with_details);
 
 /// Compares an evaluation with the limits, row by row. Each row of errors is a machine. The row is within a limit if
-/// the limit allows the deciding number of the row (ValueLimit::deciding), and if each solve of the row counts (see
-/// counts()). A limit is kept if every row is within it. Precondition: if rows are paired with poses, no limit is on
-/// the values at several poses together.
+/// the limit allows the deciding number of the row (ValueLimit::deciding), and if the solves of the row at all its
+/// poses count in statistics (counts()). A limit is kept if every row is within it. Precondition: with
+/// Pairing::row_by_row, no limit is on the values at several poses together (ValueLimit::is_over_poses).
 LimitVerdicts judge_rows(std::span<const ResponseLimit> limits, const EvaluationResult& found, Pairing pairing,
                          NotConverged policy);
 

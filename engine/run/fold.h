@@ -39,8 +39,8 @@ bool run_in_order(std::size_t count, const RunOptions& options, MakeWorker make_
   return alone ? run_alone(count, options, in_slots) : run_over_ranks(count, options, in_slots);
 }
 
-/// Reads or writes the beginning of a state: the name of the job to which the state belongs, and numbers such as those
-/// of poses and responses. When reading, throws BytesError if the state has another name or another size.
+/// Reads or writes the beginning of a state: the name of the job to which the state belongs, and sizes such as the
+/// numbers of poses and responses. When reading, throws BytesError if the state has another name or another size.
 inline void head_state(Archive& archive, std::string_view name, std::span<const std::uint64_t> sizes) {
   constexpr const char* kOther = "is the state of another kind or size of study";
   std::string read(name);
@@ -50,10 +50,10 @@ inline void head_state(Archive& archive, std::string_view name, std::span<const 
 }
 
 /// Does the work of one stage of a study, on all threads and ranks. The stage is divided into pieces, which are merged
-/// in order into `work`, the accumulator of the stage. It begins with the state of the checkpoint, if there is one, and
-/// makes as many rounds as `work` asks for. The accumulator has the same bits on all ranks, for any number of threads
-/// and ranks, and whether or not the stage was continued from a checkpoint. Returns false if the run was stopped. The
-/// type Work has these functions:
+/// in order into `work`, the accumulator of the stage. The stage begins with the state of the checkpoint, if there is
+/// one, and has as many rounds as `work` asks for. The accumulator has the same bits on all ranks, for any number of
+/// threads and ranks, and whether or not the stage was continued from a checkpoint. Returns false if the run was
+/// stopped. The type Work has these functions:
 ///
 ///     std::size_t begin_round()              begins a round; returns the number of its pieces of work
 ///     Worker worker() const                  solves pieces, and owns the scratch of one thread

@@ -47,7 +47,8 @@ struct Outlook {
   std::string solves;               ///< number of solves, as a text: "3 errors x 2 poses x 1000 samples = 6000 solves"
   MemoryOutlook memory;             ///< memory in addition to that of the program itself
   std::vector<WorkOutlook> shared;  ///< work that all threads share: the solves
-  /// Work that one thread does while the others wait, such as separating errors or reading saved states.
+  /// Work that one thread does while the others wait, such as separating the effects of errors (Separation) or reading
+  /// saved states.
   std::vector<WorkOutlook> by_one;
   /// With adaptive samples: the least number of solves, as a fraction of the largest number; 1 if the number of samples
   /// is fixed.
@@ -78,7 +79,7 @@ inline constexpr std::size_t kStoredSolves = (kStatusNames.size() + 2) * kWholeN
 /// largest number of iterations, samples by status.
 inline constexpr std::size_t kSolverColumns = (2 + kStatusNames.size()) * sizeof(double) + sizeof(std::uint32_t);
 
-/// The memory of `count` things, of which each takes the memory `each`.
+/// The memory of `count` objects that each take the memory `each`.
 MemoryOutlook times(std::size_t count, const MemoryOutlook& each);
 /// Bytes of an EvaluationResult for one row of errors at one pose.
 std::size_t outcome_bytes(const ModelDescription& model, Outcomes outcomes);

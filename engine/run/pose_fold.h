@@ -22,7 +22,7 @@ namespace poesy {
 /// else:
 ///
 ///     static constexpr std::string_view kName     name in the states, unique among all jobs
-///     std::vector<std::uint64_t> sizes() const    numbers that must be the same in a state to be read
+///     std::vector<std::uint64_t> sizes() const    sizes of the job; a state with other sizes is refused
 ///     Rounds::Rule rule() const                   the rule of adaptive samples
 ///     Worker worker() const                       solves units, and owns the scratch of one thread: worker(unit)
 ///     void unit_state(Archive&, const WorkUnit&, Unit&) const   reads or writes a unit, which has a member `solves`
@@ -35,7 +35,7 @@ namespace poesy {
 ///     void add(const WorkUnit&, const Unit&)      adds the next unit of its cell
 ///     std::size_t units_done(std::size_t cell) const   number of units of a cell that were added
 ///     SolveCounts total() const                   solves of all units that were added
-///     void state(Archive&, std::size_t samples)   writes all sums; or reads and adds sums of a plan with `samples`
+///     void state(Archive&, std::size_t samples)   writes all sums, or reads and adds them; see CellSums::state()
 template <class Job>
 class PoseFold {
  public:
@@ -45,7 +45,7 @@ class PoseFold {
   /// The type of the sums to which units are added.
   using Sums = decltype(std::declval<const Job&>().sums(std::declval<const Plan&>(), {}));
 
-  /// Does the cells of options.shard, or all cells without a shard. Keeps references to the plan and the job.
+  /// Solves the cells of options.shard, or all cells if there is no shard. Keeps references to the plan and the job.
   PoseFold(const Plan& plan, const Job& job, const RunOptions& options)
       : plan_(plan), job_(job), shard_(options.shard.value_or(Shard())), rounds_(plan, job.rule()) {
     begin_sums();
@@ -212,7 +212,7 @@ class CellSums {
   std::uint64_t samples_in(const Store& store, std::size_t cell) const {
     return !store.solves.empty() && cells_.holds(cell) ? store.solves[cell - cells_.first].total() : 0;
   }
-  /// The same store, after it was given room for the cells of the shard.
+  /// Returns the store. If it has no cells yet, first gives it empty sums for the cells of the shard.
   Store& with_room(Store& store) const {
     if (store.solves.empty()) store = Store(responses_, cells_.end - cells_.first);
     return store;

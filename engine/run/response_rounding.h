@@ -7,7 +7,8 @@
 
 namespace poesy {
 
-/// [responses] Model::rounding() of each response: the magnitude of its rounding errors, SI.
+/// [responses] Model::rounding() of each response: the largest standard deviation (SI) that rounding alone may cause if
+/// an error without effect varies.
 std::vector<double> response_rounding(const Model& model);
 
 /// [responses] For each response, the largest standard deviation (SI) that rounding alone may cause if all errors of

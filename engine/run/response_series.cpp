@@ -50,7 +50,7 @@ bool ResponseSeries::form(double range, std::span<const double> solved) {
   return is_certified(solved);
 }
 
-/// Returns true if response r is the norm of its components in all solves, and each component is a series of its own. A
+/// Returns true if response r is the norm of its components in all solves, and each component has its own series. A
 /// response that a study defines may weigh its components, so that it is not their norm.
 bool ResponseSeries::is_norm(std::size_t r, std::span<const double> solved) const {
   const std::vector<std::size_t>& components = responses_[r].components;
@@ -123,8 +123,8 @@ void ResponseSeries::take_norm(std::size_t r, std::span<double> responses) const
   for (double& value : values) value = std::sqrt(value);
 }
 
-/// Replaces the values of a series, which are squares, by the response, which is their root. The error of a root y is
-/// the error of y^2 divided by 2 y.
+/// Replaces the values of a series by the response, which is their root, or with Form::root_over_error their root times
+/// the magnitude of the scaled error (x_). The error of a root y is the error of y^2 divided by 2 y.
 void ResponseSeries::take_root(const Row& row, std::span<double> values) {
   for (std::size_t b = 0; b < values.size(); ++b) {
     const double size = row.form == Form::root_over_error ? std::abs(x_[b]) : 1.0;

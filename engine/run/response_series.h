@@ -15,9 +15,9 @@ namespace poesy {
 /// is a smooth function of the error, and has a series of its own. A response without a sign is computed from smooth
 /// functions:
 ///
-/// - as the norm of its components, if these have a sign and it is their norm in all solves;
-/// - otherwise as the root of its square, which has a series. If the response is 0 without the error, that is instead a
-///   series of its square divided by the square of the error.
+/// - as the norm of its components, if these have a sign and the response is their norm in all solves;
+/// - otherwise as the root of its square, which has a series. If the response is 0 without the error, the series gives
+///   its square divided by the square of the error.
 class ResponseSeries {
  public:
   static constexpr std::size_t kNodes = ChebyshevSeries::kNodes;  ///< solves from which the series are formed

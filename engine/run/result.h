@@ -51,7 +51,7 @@ SolveCounts total_of(std::span<const SolveCounts> cells);
 
 /// A sample that was not solved.
 struct FailedSample {
-  SampleIndex sample;  ///< number of the sample, from 0, among those of its error (or of all errors) at its pose
+  SampleIndex sample;  ///< number of the sample, from 0, in its cell (one error, or all errors, at one pose)
   SolveStatus status;  ///< how its solve ended
 
   /// Returns true if both members are equal.
@@ -66,7 +66,8 @@ class FailedSamples {
   /// the run was divided.
   static constexpr std::size_t kMost = 10;
 
-  /// Adds a failed sample. Precondition: samples are added in ascending order.
+  /// Adds a sample if it was not solved and fewer than kMost failures are kept. Precondition: samples are added in
+  /// ascending order.
   void add(SampleIndex sample, SolveStatus status) {
     if (solved(status) || first_.size() == kMost) return;
     first_.reserve(kMost);
@@ -119,12 +120,12 @@ struct EstimateCourse {
 /// How the adaptive sampling of a study ended (engine/run/rounds.h). A slot is one error that varies alone, or all
 /// errors that vary together.
 struct ConvergenceResult {
-  std::size_t min = 0;          ///< least number of samples at each pose
+  std::size_t min = 0;          ///< least number of samples at each pose as stated; milestones() rounds it up
   std::size_t max = 0;          ///< largest number of samples at each pose
   double relative_error = 0.0;  ///< wanted half-width, divided by |quantity| (see EstimateCourse)
   /// The estimates, with half-widths, after each number of samples at which it was decided whether to continue
-  /// (milestone). The last number may be `max`, where nothing has to be decided. NaN after the sampling of an error has
-  /// ended.
+  /// (milestone). The last number may be `max`, where nothing has to be decided. An estimate is NaN if the sampling of
+  /// its slot had ended before.
   EstimateCourse course;
   std::vector<std::uint8_t> reached;  ///< [responses x slots] 1 if the half-width at the end is small enough, else 0
   /// [responses x slots] half-width divided by |quantity| at the end; NaN for 0 / 0.
@@ -147,8 +148,8 @@ struct LimitVerdict {
   std::optional<std::size_t> row = std::nullopt;   ///< row to which `value` belongs, for an evaluation
 };
 
-/// The verdict on the yield, for Judge::yield: the share of machines that are within all limits at all poses. A machine
-/// that is not solved at a pose is a reject.
+/// The verdict on the yield, for Judge::yield: the share of machines that keep all limits (ValueLimit::keeps). A
+/// machine that is not solved at a pose is a reject.
 struct YieldVerdict {
   /// The decision, by one-sided bounds on the yield (Clopper and Pearson) at the level conf_level.
   enum class Decision {
@@ -164,7 +165,7 @@ struct YieldVerdict {
   double ci_low = 0.0;                      ///< lower end of the two-sided interval of `value`
   double ci_high = 0.0;                     ///< upper end of the two-sided interval of `value`
   std::uint64_t machines = 0;               ///< number of machines that were tried
-  std::uint64_t rejects = 0;                ///< number of machines that are not within every limit at every pose
+  std::uint64_t rejects = 0;                ///< number of machines that break a limit or are not solved at a pose
   std::uint64_t unsolved = 0;  ///< number of machines that are rejects only because they are not solved at a pose
   /// If errors are drawn from measured parts: the interval that also includes the uncertainty from the small number of
   /// parts; NaN if not known.

@@ -60,8 +60,8 @@ class SeriesEvaluator final : public Evaluator {
     std::vector<std::uint32_t> iterations;
   };
 
-  /// Solves the block with these values of the varied error instead of its own. The range is not passed on: the solver
-  /// would prepare for it, which is too slow for so few samples.
+  /// Solves the block with these values of the varied error instead of the block's values. The range is not passed on:
+  /// the solver would prepare for it, which is too slow for so few samples.
   Solved solve(SampleBlock samples, std::span<const double> errors) {
     samples.values = errors;
     samples.count = errors.size();

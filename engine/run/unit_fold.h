@@ -25,7 +25,7 @@ concept SampledUnits = requires(const Job& job) {
 /// pending units, shards, and states. A job is a type with everything else:
 ///
 ///     static constexpr std::string_view kName       name in the states, unique among all jobs
-///     std::vector<std::uint64_t> sizes() const      numbers that must be the same in a state to be read
+///     std::vector<std::uint64_t> sizes() const      sizes of the job; a state with other sizes is refused
 ///     NumberRange units(const Shard&) const         the units of a shard, numbered from 0 over all shards
 ///     std::uint64_t expected(std::size_t n) const   expected number of solves of unit n
 ///     Worker worker() const                         owns the scratch of one thread: worker(n) solves unit n
@@ -37,7 +37,7 @@ concept SampledUnits = requires(const Job& job) {
 /// which writes the sums of these units, or reads and adds them. The type of a unit may be Sums; a state is then read
 /// as a Sums object, which is added like a unit. A job whose units are blocks of samples also has:
 ///
-///     Rounds rounds() const                         the rule for rounds, at the first round
+///     Rounds rounds() const                         the rounds of the study, at the start of the first one
 ///     std::size_t samples() const                   samples of the whole study
 ///     std::size_t units_for(std::size_t samples) const   number of units for these samples
 ///     bool is_whole(std::size_t n) const            true if more samples would not make unit n larger
@@ -52,7 +52,7 @@ class UnitFold {
   using Worker = decltype(std::declval<const Job&>().worker());  ///< The type of the worker of one thread.
   using Unit = std::invoke_result_t<Worker&, std::size_t>;       ///< The type of the output of a unit.
 
-  /// Does the units of options.shard, or all units without a shard. Keeps a reference to the job.
+  /// Solves the units of options.shard, or all units if there is no shard. Keeps a reference to the job.
   UnitFold(const Job& job, const RunOptions& options)
       : job_(job), units_(job.units(options.shard.value_or(Shard()))), sums_(job.sums()) {
     clear();

@@ -92,7 +92,7 @@ std::string heading(const StudyTable& table) {
   return fmt::format("`[{}]`", fmt::join(table.paths, "]`, `["));
 }
 
-/// Markdown text that lists the words of the table's chooser with which the key applies.
+/// Markdown text that lists the words of the chooser (StudyTable::chooser) with which the key applies.
 std::string holds_text(const StudyKey& key) {
   if (key.only_for.empty()) return "all";
   return fmt::format("`{}`{}", fmt::join(key.only_for, "`, `"), key.may_stay ? "; else ignored" : "");

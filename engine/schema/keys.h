@@ -56,7 +56,7 @@ struct StudyTable {
   /// words of the chooser. The result is then the one that applies with `word`, or the first one if none does.
   const StudyKey* find(std::string_view key, std::string_view word = {}) const;
   std::vector<std::string_view> names() const;  ///< The names of the keys, in order.
-  bool has_names_of_model() const;              ///< Returns true if a key is a placeholder.
+  bool has_names_of_model() const;              ///< Returns true if a key is a placeholder for names of the model.
   /// The setting of the chooser as messages name it, for a key that does not apply with this word: `select = "grid"`.
   std::string owner_of(std::string_view word) const;
   /// The advice to a user who leaves the key out. A key that is not described is a name that the model gives; it has
@@ -335,7 +335,7 @@ StudyTable described(const Keys<Object, Scope>& keys) {
   return table;
 }
 
-/// The word of the table's chooser in this object; empty if the table has no chooser.
+/// The word that this object has for the table's chooser (Keys::chooser); empty if the table has no chooser.
 template <class Object, class Scope>
 std::string chosen_word(const Keys<Object, Scope>& keys, const Object& object) {
   if (keys.chooser.empty()) return {};

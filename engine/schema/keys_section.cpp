@@ -82,9 +82,9 @@ std::string unit_remedy(std::string_view text, Dimension dimension) {
   return "write a number and a unit, e.g. " + example(dimension);
 }
 
-/// The advice about the key `refused`, which does not apply with this word of the table's chooser: to remove it, or to
-/// write the key that is missing instead, or the word with which the written keys are complete. has(name): whether the
-/// file's table has this key.
+/// The advice about the key `refused`, which does not apply with this word of the chooser (StudyTable::chooser): to
+/// remove it. If another required key is missing: to write that key instead, or a word of the chooser for which no
+/// required key is missing. has(name): returns true if the table in the file has this key.
 template <class Has>
 std::string remedy_for(const StudyTable& table, const StudyKey& refused, std::string_view word, const Has& has) {
   const auto lacking = [&](std::string_view chosen) {

@@ -6,7 +6,7 @@
 
 namespace poesy {
 
-/// One key of a resolved study and its value, for display.
+/// One key of a resolved study (with every default filled in) and its value, for display.
 struct StudySetting {
   /// Section of the key: "errors". A section of a list ends with its number, from 1: "analysis.cases 2". Empty for keys
   /// before the first section.

@@ -19,7 +19,7 @@ class BucketCounts {
  public:
   /// A bucket that contains values.
   struct Filled {
-    std::uint64_t bucket;  ///< number of the bucket in the scale of magnitudes
+    std::uint64_t bucket;  ///< index of the bucket in the scale of magnitudes
     std::uint64_t count;   ///< number of values in the bucket
   };
 
@@ -33,13 +33,15 @@ class BucketCounts {
 
   const BucketScale& scale() const { return scale_; }                  ///< The scale of the buckets.
   std::size_t pages() const { return counts_.size() / kPageBuckets; }  ///< The number of pages with values.
-  std::uint64_t zeros() const { return zeros_; }                       ///< The number of values that count as zero.
+  std::uint64_t zeros() const { return zeros_; }                       ///< The number of zero and subnormal values.
 
-  /// Makes room for values between these extremes. Precondition: all counted values are between them.
+  /// Extends the lists of pages to all pages that values between these extremes need. Precondition: all counted values
+  /// are between these extremes.
   void reach(const Extremes& extremes);
-  /// Counts these values. Precondition: reach() made room for them.
+  /// Counts these values. Precondition: they are between the extremes of the last reach().
   void add(std::span<const double> values);
-  /// Adds the counts of another object, exactly. Preconditions: the same scale; reach() made room.
+  /// Adds the counts of another object, exactly. Preconditions: the same scale; the values of the other object are
+  /// between the extremes of the last reach().
   void merge(const BucketCounts& other);
   /// Replaces the scale by the next coarser one, and the counts by those of the coarser scale. Precondition: there is a
   /// coarser scale.
@@ -59,7 +61,7 @@ class BucketCounts {
  private:
   /// The pages of the values of one sign, with their places in counts_.
   struct Side {
-    std::uint64_t first = 0;  ///< number of the first page
+    std::uint64_t first = 0;  ///< index of the first page
     /// Places of the pages first, first + 1, ... in counts_; kNowhere for pages without counts.
     std::vector<std::uint16_t> places{};
   };
@@ -68,7 +70,7 @@ class BucketCounts {
   std::uint64_t count_at(std::size_t at) const { return counts_[at] + (wraps_.empty() ? 0 : wraps_[at] << 16U); }
   /// The index in counts_ of the first count of this page. Makes an empty page if none is stored yet.
   std::size_t place(Side& side, std::uint64_t page);
-  std::uint16_t new_page();  ///< Makes an empty page and returns its number among the stored pages.
+  std::uint16_t new_page();  ///< Makes an empty page and returns its index among the stored pages.
   void add_at(std::size_t at, std::uint64_t count);
   /// Records that the 16-bit count at this index has overflowed `times` times.
   void wrap(std::size_t at, std::uint64_t times);

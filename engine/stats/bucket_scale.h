@@ -41,10 +41,10 @@ inline constexpr std::size_t kPageBuckets = 64;
 /// The largest number of pages that a scale may span, of both signs together.
 inline constexpr std::size_t kMostPagesSpanned = 1023;
 
-/// Divides the magnitudes of one sign into buckets, numbered from zero. Below 2^(octave - 1023), each range from a
-/// power of two to the next is divided into 2^7 buckets of equal width. From 2^(octave - 1023) on, all buckets have the
-/// width 2^(octave - 1031). A coarser scale has a larger octave, and each bucket is inside one bucket of any coarser
-/// scale.
+/// Divides the magnitudes of one sign into buckets, numbered from zero. The parameter `octave` is the biased exponent
+/// of a double. Below 2^(octave - 1023), each range from a power of two to the next is divided into 2^7 buckets of
+/// equal width. From 2^(octave - 1023) on, all buckets have the width 2^(octave - 1031). A coarser scale has a larger
+/// octave, and each bucket is inside one bucket of any coarser scale.
 class BucketScale {
  public:
   static constexpr unsigned kCoarsest = 2047;  ///< the octave of the scale without buckets of equal width
@@ -67,8 +67,8 @@ class BucketScale {
   /// The page of the next coarser scale that contains this page of the present scale.
   std::uint64_t page_of_coarser(std::uint64_t page) const;
 
-  /// The number of the bucket of each value, plus kSign if the value is below zero. Precondition: the biased exponent
-  /// of each value is at most the octave plus 44.
+  /// The index of the bucket of each value, plus kSign if the value is below zero. Precondition: the biased exponent of
+  /// each value is at most the octave plus 44.
   void keys(std::span<const double> values, std::span<std::uint64_t> keys) const;
   std::uint64_t key(double value) const;    ///< The bucket of one value, as keys() gives it.
   double edge(std::uint64_t bucket) const;  ///< The smallest magnitude in this bucket.
@@ -80,7 +80,7 @@ class BucketScale {
 /// The pages (blocks of kPageBuckets buckets) that values of one sign need: from the page of the smallest magnitude to
 /// the page of the largest.
 struct PageRange {
-  std::uint64_t first = 0;  ///< number of the first page: the number of its first bucket divided by kPageBuckets
+  std::uint64_t first = 0;  ///< index of the first page: the index of its first bucket divided by kPageBuckets
   std::size_t count = 0;    ///< number of pages; 0 without values of this sign
 };
 

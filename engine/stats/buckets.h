@@ -25,12 +25,12 @@ struct RankInterval {
   std::uint64_t high;  ///< rank of the upper end
 };
 
-/// The order statistics of n independent draws that enclose the quantile q of any distribution with a probability of at
-/// least conf_level. The probability that the quantile is beyond an end is at most (1 - conf_level) / 2 for either end
-/// (David and Nagaraja 2003, Order Statistics, 7.1), because the number of draws below the quantile is binomial. With
-/// too few draws an end has no order statistic: an upper end at q = 0.9973 and 95 % needs 1365 draws. If the draws are
-/// stratified (each group of a mixture has its share of them), the number of draws below the quantile varies less
-/// (Hoeffding 1956), so the interval is wider than necessary. Preconditions: 0 < q < 1, 0 < conf_level < 1.
+/// The ranks of the order statistics of n independent draws that enclose the quantile q of any distribution with a
+/// probability of at least conf_level. The probability that the quantile is beyond an end is at most (1 - conf_level) /
+/// 2 for either end (David and Nagaraja 2003, Order Statistics, 7.1), because the number of draws below the quantile is
+/// binomial. With too few draws an end has no order statistic: an upper end at q = 0.9973 and 95 % needs 1365 draws. If
+/// the draws are stratified (each group of a mixture has its share of them), the number of draws below the quantile
+/// varies less (Hoeffding 1956), so the interval is wider than necessary. Preconditions: 0 < q < 1, 0 < conf_level < 1.
 RankInterval quantile_ranks(std::uint64_t n, double q, double conf_level);
 
 /// The interval between the order statistics with these ranks. Each end is at the outer edge of the bucket of its order

@@ -72,8 +72,8 @@ PolynomialScore::PolynomialScore(std::span<const double> points, std::span<const
 // Stieltjes' procedure (Gautschi 2004, Orthogonal Polynomials, ch. 2.2.3.1), which is stable for low degrees.
 void PolynomialScore::find_polynomials(std::span<const double> x, std::span<const double> weights, double centre,
                                        std::size_t degree) {
-  // Smallest norm of a polynomial, relative to the norm of the previous polynomial. A smaller norm means that there are
-  // no more points than the degree.
+  // Smallest squared norm of a polynomial, relative to that of the previous polynomial. A smaller norm means that the
+  // degree has reached the number of distinct points.
   constexpr double kNone = 1e-12;
   const std::size_t count = x.size();
   const Mean mean(weights);

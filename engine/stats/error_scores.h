@@ -8,8 +8,8 @@
 
 namespace poesy {
 
-// The score of an error e with density f and size t is S(e) = d ln f(e; t) / d ln t. It states how the density changes
-// while all values of the error grow in proportion. For any event with probability P, dP/dt = E[1_event S] / t
+// The score of an error e with density f and size t is S(e) = d ln f(e; t) / d ln t. The score states how the density
+// changes while all values of the error grow in proportion. For any event with probability P, dP/dt = E[1_event S] / t
 // (likelihood ratio; Rubinstein 1986, Math. Comput. Simul. 28, 365-379). The growth score G(e) = f(e; g t) / f(e; t) -
 // 1 is the counterpart for a finite step: E[1_event G] is the change of P if the error grows by a factor g.
 
@@ -39,10 +39,10 @@ struct NormalScore {
   /// @}
 };
 
-/// The score of an error of any distribution, for a size that grows about the mean of the error. It replaces d ln f / d
-/// ln t, which does not exist if the ends of the error's range move with the size. It is valid for an event if the
-/// probability of the event, given the error, is a polynomial of degree kDegree in the error. With the orthonormal
-/// polynomials p_k of the error's distribution and its mean c,
+/// The score of an error of any distribution, for a size that grows about the mean of the error. This score replaces d
+/// ln f / d ln t, which does not exist if the ends of the error's range move with the size. The score is valid for an
+/// event if the probability of the event, given the error, is a polynomial of degree kDegree in the error. With the
+/// orthonormal polynomials p_k of the error's distribution and its mean c,
 ///
 ///     S(e) = sum over k = 1 .. kDegree of E[p_k'(e) (e - c)] p_k(e)
 ///
@@ -51,11 +51,11 @@ struct NormalScore {
 /// states the bias. The growth score has the factor E[p_k(c + g (e - c))] instead of E[p_k'(e) (e - c)].
 class PolynomialScore {
  public:
-  static constexpr std::size_t kDegree = 6;  ///< A higher degree adds more noise than it removes bias (theory.md).
+  static constexpr std::size_t kDegree = 6;  ///< With a higher degree, added noise outweighs removed bias (theory.md).
 
   /// points, weights: [points] in the unit of the error; weighted means of polynomials up to degree 3 kDegree must
-  /// equal those of the error. degree: the degree of the score, at most kDegree. It is lowered if there are too few
-  /// distinct points. Precondition: weights are positive and sum to 1; at least two distinct points.
+  /// equal those of the error. degree: the degree of the score, at most kDegree. The degree is lowered if there are too
+  /// few distinct points. Precondition: weights are positive and sum to 1; at least two distinct points.
   PolynomialScore(std::span<const double> points, std::span<const double> weights, std::size_t degree = kDegree);
 
   double sigma() const { return sigma_; }  ///< The size t of the error: standard deviation of the points.
@@ -95,7 +95,7 @@ struct BlockScore {
 /// The score of one error; std::monostate if it is not known.
 using ErrorScore = std::variant<std::monostate, NormalScore, PolynomialScore, BlockScore>;
 
-/// The size t of the error, by which a yield is differentiated: `sigma` of its score; 0 if the score is not known.
+/// The size t of the error that has this score: the member `sigma` of the score; 0 if the score is not known.
 double size_of(const ErrorScore& score);
 
 /// A block of k correlated normal errors e_i = c_i + t_i z_i, where the z_i are standard normals with the correlation

@@ -33,7 +33,7 @@ double graded(double t) { return square(t) * (3.0 - 2.0 * t); }
 /// Statistics of the samples in bins of equal probability of an error, and the distribution of the error in these bins.
 struct Strata {
   Vector count;      ///< [bins] number of samples; the lists below also have one entry for each bin
-  Vector mean;       ///< mean of the response
+  Vector mean;       ///< mean of the response, minus the average of this mean over the bins
   Vector variance;   ///< sample variance of the response
   Vector of_mean;    ///< sampling variance of `mean`
   Vector steps;      ///< 1 / difference of the mean error between the two neighbouring bins; 0 without neighbours

@@ -59,9 +59,10 @@ struct BinnedVariance {
 /// bin on average, or a bin has fewer than four. If even four bins have too few samples, `between` and `total` are NaN.
 ///
 /// The response also varies within a bin with the error. This variance is estimated as that of a straight line over the
-/// error, whose slope comes from the two neighbouring bins and whose range from `spread`; it is left out if `spread` is
-/// all zero. Two bins are not neighbours if the error decreases from one to the next: a shifted distribution jumps back
-/// at u = 1/2, from the largest error of its low half to the smallest one of its high half.
+/// error: slope^2 times the variance of the error within the bin. The slope comes from the means of the two
+/// neighbouring bins, the variance of the error from `spread`. This part is left out if `spread` is all zero. Two bins
+/// are not neighbours if the error decreases from one to the next: a shifted distribution jumps back at u = 1/2, from
+/// the largest error of its low half to the smallest one of its high half.
 ///
 /// `between` underestimates Var(E[y | u]). Relative bias with 32 bins, first without a spread and then with one, for
 /// these responses (z is a standard normal error):
@@ -75,7 +76,7 @@ BinnedVariance binned_variance(const std::array<BinSums, kEffectBins>& sums, con
 
 /// Whether estimates depend on each other.
 enum class Dependence {
-  independent,  ///< the estimates come from separate draws, as at the poses of a study that draws per pose
+  independent,  ///< the estimates come from separate draws, as at poses that each have new draws of the errors
   unknown       ///< the estimates come from the same draws, as at poses with the same machines, or for components of a
                 ///< vector
 };

@@ -32,8 +32,8 @@ double published_index(std::span<const LocalIndex> poses);
 /// The global index: mean over the poses plus sample standard deviation over the poses (Du et al. 2022, Eqs. 53-54);
 /// NaN if a pose has no index, the mean alone for a single pose.
 ///
-/// The interval is for the value that infinitely many samples would give at the same poses. The plain formula takes
-/// sampling noise for spread between poses; the interval subtracts this noise. So if the poses differ by little more
+/// The interval is for the value that infinitely many samples would give at the same poses. The estimate counts
+/// sampling noise as spread between poses; the interval subtracts this noise. So if the poses differ by little more
 /// than noise, the estimate is near or above the upper end of its interval. The interval is extended to contain the
 /// estimate. With more samples the difference disappears. Mean and spread are combined, with their correlation, by the
 /// method of variance estimates recovery (Zou and Donner 2008, Stat. Med. 27, 1693-1702). If the spread is no more than

@@ -11,8 +11,8 @@
 namespace poesy {
 
 /// A least-squares fit of several numbers of a machine (such as the components of a vector at each pose), each as a
-/// linear function of the machine's errors. It uses machines that the study solves anyway. Errors are standardised, x =
-/// (e - mean) / sigma, so a slope is the effect of one standard deviation.
+/// linear function of the machine's errors. The fit uses machines that the study solves anyway. Errors are
+/// standardised, x = (e - mean) / sigma, so a slope is the effect of one standard deviation.
 struct LinearFit {
   std::size_t errors = 0;      ///< number of errors
   std::uint64_t machines = 0;  ///< number of machines in the fit
@@ -34,17 +34,17 @@ LinearFit joined(std::span<const LinearFit> fits);
 /// Accumulates the sums for a LinearFit over machines, in one pass. Sums of several objects can be merged.
 class LinearFitSums {
  public:
-  LinearFitSums(std::size_t errors,
-                std::size_t rows);  ///< Empty sums. errors: number of errors; rows: number of fitted numbers.
+  /// Empty sums. errors: number of errors. rows: number of fitted numbers.
+  LinearFitSums(std::size_t errors, std::size_t rows);
 
   /// Adds machines. errors: [errors x machines] standardised. numbers: [numbers x machines]; they must be finite for
-  /// machines that count. counts: [machines] 1 if the machine counts; 0 if not, and its numbers are ignored.
+  /// machines with counts = 1. counts: [machines] 1 if the machine is added to the sums, 0 if it is ignored.
   void add(std::span<const double> errors, std::span<const double> numbers, std::span<const std::uint8_t> counts);
   /// Adds the sums of machines that come later. Merging in the same order gives the same bits. Precondition: `later`
   /// was made for as many errors and as many fitted numbers (rows) as this object.
   void merge(const LinearFitSums& later);
 
-  std::uint64_t machines() const { return machines_; }  ///< The number of machines that count.
+  std::uint64_t machines() const { return machines_; }  ///< The number of machines in the sums.
 
   /// The fit. None if there are fewer than 2 (P + 1) machines for P errors, because so few say too little about
   /// residuals; none if the equations are singular.

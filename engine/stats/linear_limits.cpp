@@ -99,8 +99,8 @@ std::vector<double> LinearLimits::values_of(const LinearLimit& limit, std::span<
   return y;
 }
 
-// y is the value, d the change of one error, a the slope: from <= y + a d <= to holds for d between (from - y) / a and
-// (to - y) / a.
+// Let y be the limited value, a its slope in one error, and d the change of this error: from <= y + a d <= to holds for
+// d between (from - y) / a and (to - y) / a.
 void LinearLimits::add_ends(const LinearLimit& limit, std::span<const double> errors, std::span<const double> reach,
                             Machines& found) const {
   POESY_EXPECTS(limit.rows == 1);
@@ -128,8 +128,8 @@ void LinearLimits::add_ends(const LinearLimit& limit, std::span<const double> er
   }
 }
 
-// y is the vector, d the change of one error, a the slope, L the limit: |y + a d|^2 <= L^2 holds for d between the
-// roots of a^2 d^2 + 2 (y a) d + y^2 - L^2.
+// Let y be the limited vector, L the limit on its norm, a its slope in one error, and d the change of this error: |y +
+// a d|^2 <= L^2 holds for d between the roots of a^2 d^2 + 2 (y . a) d + y^2 - L^2.
 void LinearLimits::add_limit(const LinearLimit& limit, std::span<const double> errors, std::span<const double> reach,
                              Machines& found) const {
   const std::size_t block = found.rejected.size();

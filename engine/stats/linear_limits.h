@@ -26,7 +26,7 @@ class ErrorRange {
   /// The share of the errors that are below the value e, if the distances of all errors from the centre grow by the
   /// factor `growth`.
   double below(double e, double growth) const { return below(centre_ + (e - centre_) / growth); }
-  /// The difference of the largest and the smallest error.
+  /// The distance between the two outermost quantiles, at the ends of grid().
   double length() const { return quantiles_.back() - quantiles_.front(); }
 
  private:
@@ -35,7 +35,7 @@ class ErrorRange {
 };
 
 /// A limit at one pose on a vector offset + slope e, which is linear in the errors e. The limit is on the norm of the
-/// vector, or on its value if it has only one component.
+/// vector, or on the component itself if the vector has only one.
 struct LinearLimit {
   std::size_t rows;  ///< number of components of the vector
   /// A limit on magnitudes applies to the norm of the vector; any other limit applies to its only component.

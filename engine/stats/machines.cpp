@@ -32,7 +32,8 @@ void rejects_state(Archive& archive, Rejects& rejects, const Rejects& among, std
 }
 
 /// Updates the results of some machines by the values of one response at one pose: whether the machines are within the
-/// limit, their largest magnitudes, and their sums of squares. Machines whose sample does not count are not changed.
+/// limit, their largest magnitudes, and their sums of squares. Machines that are unsolved at this pose (counts = 0) are
+/// not changed.
 struct ResponseAtPose {
   std::span<const double> values;
   std::span<const std::uint8_t> counts;

@@ -22,7 +22,7 @@ struct Rejects {
   friend bool operator==(const Rejects&, const Rejects&) = default;  ///< Returns true if both are equal.
 };
 
-/// The numbers of rejected machines. A response without a limit has an infinite limit. So it rejects only machines with
+/// The numbers of rejected machines. A response without a limit has an infinite limit, which rejects only machines with
 /// an unsolved sample, and only in Rejects::strict.
 struct MachineCounts {
   std::uint64_t machines = 0;               ///< machines that were evaluated
@@ -46,16 +46,17 @@ struct MachineCounts {
 
 /// Collects the outcomes of a block of machines, pose after pose. Memory: 17 bytes for each machine and response, for
 /// any number of poses. For a response whose limit is not plain (ValueLimit::is_plain), each machine takes 8 bytes more
-/// for each pose. A machine whose sample does not count at one pose or more is a reject (Rejects::strict), and solved()
-/// is 0 for it. Its largest magnitude and root mean square are NaN, because those over the other poses alone would be
-/// too small. Leave such machines out of distributions, and state their number (MachineCounts::unsolved).
+/// for each pose, and one further byte for all these responses together. A machine that is not solved at every pose is
+/// a reject (Rejects::strict), and solved() is 0 for this machine. Its largest magnitude and root mean square are NaN,
+/// because those over the solved poses alone would be too small. Leave these machines out of distributions, and state
+/// their number (MachineCounts::unsolved).
 class MachineBlock {
  public:
   /// limits: one for each response; infinite for a response without a limit. machines: the number of machines.
   MachineBlock(std::span<const ValueLimit> limits, std::size_t machines);
 
   /// Adds the outcomes at the next pose. responses: [responses x machines], row-major as in OutcomeBlock. counts:
-  /// [machines] 1 if the sample counts; 0 if not, and its responses are ignored.
+  /// [machines] 1 if the sample counts in statistics; 0 if it is unsolved, and its responses are ignored.
   void add_pose(std::span<const double> responses, std::span<const std::uint8_t> counts);
 
   std::size_t machines() const { return solved_.size(); }  ///< The number of machines.
@@ -64,8 +65,8 @@ class MachineBlock {
 
   /// [machines] 1 if the machine is rejected (strict), else 0; an argument of ScoreSums::add().
   std::vector<std::uint8_t> rejected() const;
-  /// [machines] 1 if all samples of the machine count, else 0. MainEffectSums::add() takes it as `counts` if its
-  /// responses are numbers over all poses of a machine.
+  /// [machines] 1 if the machine is solved at every pose, else 0. Pass this list as `counts` to MainEffectSums::add()
+  /// if the responses there are numbers over all poses of a machine.
   std::span<const std::uint8_t> solved() const { return solved_; }
   /// Largest magnitudes over the poses; NaN if the machine is not solved at each of them.
   Array<double, axis::Response, axis::Sample> largest() const;
@@ -76,10 +77,10 @@ class MachineBlock {
   Array<double, axis::Response, axis::Sample> root_mean_square() const;
 
  private:
-  /// The values of a machine at the poses where its sample counts.
+  /// The values of a machine at the poses where it is solved.
   std::vector<double> values_of(std::size_t response, std::size_t machine) const;
-  /// [machines] 1 if the machine breaks the limit of this response, judged only by the poses where its sample counts;
-  /// else 0.
+  /// [machines] 1 if the machine breaks the limit of this response, judged only by the poses where the machine is
+  /// solved; else 0.
   std::vector<std::uint8_t> beyond(std::size_t response) const;
   /// The rejects of a response at one pose, if its limit judges all poses of a machine together (a share of the poses,
   /// or the spread over them); see MachineCounts::at_pose. beyond: [machines] what the function beyond() returns for
@@ -87,7 +88,7 @@ class MachineBlock {
   Rejects rejects_over_poses(std::size_t response, std::size_t pose, std::span<const std::uint8_t> beyond) const;
 
   std::vector<ValueLimit> limits_;    ///< [responses] limit of each response
-  std::vector<std::uint8_t> solved_;  ///< [machines] 1 if all samples of the machine count
+  std::vector<std::uint8_t> solved_;  ///< [machines] 1 if the machine is solved at every pose
   /// Largest magnitudes over the poses where the machine is solved.
   Array<double, axis::Response, axis::Sample> largest_;
   Array<double, axis::Response, axis::Sample> squares_;  ///< sums of squares over the poses where the machine is solved
@@ -95,7 +96,7 @@ class MachineBlock {
   std::vector<std::vector<Rejects>> at_pose_;                 ///< [poses][responses] rejects, judged at each pose alone
   /// For each response, its values [poses x machines] if the limit is not plain.
   std::vector<std::vector<double>> values_;
-  std::vector<std::uint8_t> counts_;  ///< [poses x machines] 1 if the sample counts; empty if all limits are plain
+  std::vector<std::uint8_t> counts_;  ///< [poses x machines] 1 if solved, else 0; empty if all limits are plain
 };
 
 }  // namespace poesy

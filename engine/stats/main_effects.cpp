@@ -41,7 +41,7 @@ POESY_EACH_INSTRUCTION_SET void add_rows(std::span<const EffectRow> rows, const 
   }
 }
 
-/// The values of only those samples that count.
+/// The values of the samples with counts = 1.
 std::vector<double> only_counting(std::span<const double> values, std::span<const std::uint8_t> counts) {
   std::vector<double> kept;
   kept.reserve(values.size());

@@ -46,14 +46,14 @@ class MainEffectSums {
   MainEffectSums(std::size_t errors, std::size_t responses);  ///< Empty sums. Precondition: both numbers are positive.
 
   /// Adds the samples of a block. responses: [responses x samples], row-major as in OutcomeBlock; they must be finite
-  /// for samples that count. counts: [samples] 1 if the sample counts; 0 if not, and its responses are ignored. Takes
+  /// for samples with counts = 1. counts: [samples] 1 if the sample is added to the sums, 0 if it is ignored. Takes
   /// about 0.3 ns for each response, error and sample (measured with four responses; decision D58).
   void add(const EffectBins& bins, std::span<const double> responses, std::span<const std::uint8_t> counts);
   /// Adds the sums of later samples. Merging in the same order gives the same bits. Precondition: the same errors and
   /// responses.
   void merge(const MainEffectSums& other);
 
-  std::uint64_t samples() const { return moments_.front().count(); }  ///< The number of samples that count.
+  std::uint64_t samples() const { return moments_.front().count(); }  ///< The number of samples in the sums.
 
   /// The variance of a response, and the part of this variance that one error causes. spread: distribution of this
   /// error within bins, or all zero (first_order.h).
@@ -62,8 +62,8 @@ class MainEffectSums {
   /// The main effect as a curve: E[y | u in bin] with Student's interval. The level holds for each interval alone, not
   /// for all 32 together. Measured coverage of 95 % intervals with eight samples in a bin (256 in all): 94 to 95 % for
   /// linear, 93 to 94 % for folded, 84 to 91 % for lognormal responses. With 32 samples in a bin: 95 %, 94 %, and 89 to
-  /// 93 %. In a bin without samples the estimate is NaN; with one sample both ends of its interval are. Precondition: 0
-  /// < conf_level < 1.
+  /// 93 %. The estimate of a bin without samples is NaN. With one sample, both ends of the interval are NaN.
+  /// Precondition: 0 < conf_level < 1.
   std::array<Estimate, kEffectBins> curve(std::size_t response, std::size_t error, double conf_level) const;
 
   void state(Archive& archive);  ///< Reads or writes all sums, bit for bit.

@@ -42,7 +42,7 @@ class MappedGradient {
   std::uint64_t misjudged() const { return misjudged_; }
 
   /// dY/dt, the derivative of the yield Y by the size t of one error. The interval is that of skewed_mean() over the
-  /// machines. To the second moment that it uses, four assumed machines are added that the map misjudges
+  /// machines. To the second moment that skewed_mean() uses, four assumed machines are added that the map misjudges
   /// (kAddedRejects), each with the mean square of the score over all machines. Preconditions: the error is a
   /// MappedError; 0 < conf_level < 1.
   Estimate gradient(std::size_t error, double conf_level) const;

@@ -15,7 +15,8 @@ namespace poesy {
 /// the vector's mean is not divided among errors.
 struct MeanSquareShares {
   std::vector<Estimate> each;  ///< [errors] share of each error in the scatter; NaN if it is correlated with others
-  /// The share of the scatter that is linear in the errors. The rest of it cannot be attributed to single errors.
+  /// The share of the scatter that is linear in the errors. The rest of the scatter cannot be attributed to single
+  /// errors.
   double linear = 0.0;
   double offset = 0.0;        ///< root mean square over the poses of the vector's mean, in the vector's unit
   double offset_share = 0.0;  ///< squared mean over the whole mean square (squared mean plus scatter)
@@ -25,18 +26,18 @@ struct MeanSquareShares {
 struct ErrorEffect {
   /// Number of the block of correlated errors to which the error belongs, from 1; 0: the error is independent.
   std::size_t block = 0;
-  double rounding = 0.0;  ///< largest effect, as a root mean square over the poses, that rounding alone may give
+  /// Largest root mean square of the effect over the poses that may be rounding, in the vector's unit.
+  double rounding = 0.0;
 };
 
 /// The shares for the vector whose components at all poses are the rows `rows` of the fit.
 ///
 /// The part of an error is the sum of slope^2 over the rows, less the bias from noise. The interval takes the noise of
-/// all rows as fully correlated, because the same machines are used at all poses. It is computed with five times the
-/// least-squares variance of each slope. This factor is correct for residuals that are the square of a normal error z:
-/// E[(z^2
-/// - 1)^2 z^2] = 5 E[(z^2 - 1)^2] E[z^2]. For residuals that do not depend on the error the interval is too wide.
-/// poses: the number of poses in the rows. errors: [errors]. All numbers are NaN if only rounding varies. Precondition:
-/// 0 < conf_level < 1.
+/// all rows as fully correlated, because the same machines are used at all poses. The interval is computed with five
+/// times the least-squares variance of each slope. This factor is correct for residuals that are the square of a normal
+/// error z, because E[(z^2 - 1)^2 z^2] = 5 E[(z^2 - 1)^2] E[z^2]. For residuals that do not depend on the error the
+/// interval is too wide. poses: the number of poses in the rows. errors: [errors]. All results are NaN if no error has
+/// an effect above its `rounding`. Precondition: 0 < conf_level < 1.
 MeanSquareShares mean_square_shares(const LinearFit& fit, std::span<const std::size_t> rows, std::size_t poses,
                                     std::span<const ErrorEffect> errors, double conf_level);
 

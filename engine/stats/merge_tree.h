@@ -14,15 +14,15 @@ namespace poesy {
 /// Merges numbered leaves (for instance the sums of blocks of samples) in an order that depends only on their numbers:
 /// leaves 8k, 8k + 1, ... 8k + 7 are merged one after the other to a branch, then eight branches to a larger branch,
 /// and so on. So a sum of floating-point numbers has the same bits however the leaves were divided into ranges, if the
-/// ranges are merged in order. The tree keeps one sum for each octal digit of the number of leaves. If its first leaf
-/// is not leaf 0, it keeps up to seven more for each digit. Sum is a value type with merge(const Sum&), whose argument
-/// is the sum of later leaves.
+/// ranges are merged in order. The tree keeps one sum for each octal digit of the number of leaves. If the first leaf
+/// of the tree is not leaf 0, the tree keeps up to seven more sums for each digit. Sum is a value type with merge(const
+/// Sum&), whose argument is the sum of later leaves.
 template <class Sum>
 class MergeTree {
  public:
   /// The merged sum of several leaves: of a whole branch, or of the first branches of a larger branch.
   struct Node {
-    std::size_t first;   ///< number of the first leaf
+    std::size_t first;   ///< index of the first leaf
     std::size_t leaves;  ///< number of leaves: a power of eight, times 2 to 7 if the node has several branches
     Sum sum;             ///< sum of these leaves
   };
@@ -48,9 +48,10 @@ class MergeTree {
   /// Adds one leaf.
   void add(std::size_t leaf, Sum sum) { add(Node{leaf, 1, std::move(sum)}); }
 
-  bool empty() const { return nodes_.empty(); }                             ///< Returns true if no leaf was added.
-  std::size_t first() const { return empty() ? 0 : nodes_.front().first; }  ///< The first leaf; 0 if there are none.
-  /// The number of the last leaf plus 1; 0 if there are none.
+  bool empty() const { return nodes_.empty(); }  ///< Returns true if no leaf was added.
+  /// The index of the first leaf; 0 if there are none.
+  std::size_t first() const { return empty() ? 0 : nodes_.front().first; }
+  /// The index of the last leaf plus 1; 0 if there are none.
   std::size_t end() const { return empty() ? 0 : nodes_.back().first + nodes_.back().leaves; }
 
   /// The sum of all leaves, merged from the last node to the first. Precondition: there is a leaf.

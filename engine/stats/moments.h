@@ -65,8 +65,7 @@ double student_quantile(double freedom, double conf_level);
 /// The z for which a standard normal is within +-z with the probability conf_level: 1.96 for 0.95. Precondition: 0 <
 /// conf_level < 1.
 double two_sided_normal_quantile(double conf_level);
-/// The t for which Student's distribution is within +-t with the probability conf_level. freedom: degrees of freedom, >
-/// 0.
+/// The same number as student_quantile(), with the same preconditions.
 double two_sided_student_quantile(double freedom, double conf_level);
 
 /// Student's interval for a mean: mean +- t(n - 1) s / sqrt(n). NaN at both ends below two samples.
@@ -95,9 +94,10 @@ struct Groups {
 
 /// The mean of all samples of all groups together. The interval is that of stratified sampling, where the groups are
 /// fixed and only the samples in them are random (Cochran 1977, Sampling Techniques, Eqs. 5.7 and 5.16). The variance
-/// is the sum of n_m s_m^2 / N^2 over the groups, with n_m samples of standard deviation s_m in group m, and N in all.
-/// Student's quantile has Satterthwaite's degrees of freedom. For one group it is mean_interval(). Groups without a
-/// sample do not count; a group of a single sample gives NaN at both ends. Precondition: 0 < conf_level < 1.
+/// is the sum of n_m s_m^2 / N^2 over the groups, with n_m samples of standard deviation s_m in group m, and N samples
+/// in all groups. Student's quantile has Satterthwaite's degrees of freedom. For one group the interval is
+/// mean_interval(). Groups without a sample are left out; a group of a single sample gives NaN at both ends.
+/// Precondition: 0 < conf_level < 1.
 Estimate stratified_mean(const Groups& groups, double conf_level);
 
 }  // namespace poesy

@@ -27,9 +27,9 @@ std::uint64_t trials_without_failure(double share, double confidence);
 /// The change of the share of successes between two series of the same n trials, with its interval. gained: number of
 /// trials that succeed only in the second series; lost: number of trials that succeed only in the first series. The
 /// interval is that of Agresti and Min (2005, Statistics in Medicine 24, 729-740): Wald's, after half a trial is added
-/// to each of the four outcomes. It is narrower than for independent series if most trials have the same outcome in
-/// both. Without trials the change is NaN, and the interval is [-1, 1]. Preconditions: gained + lost <= n, 0 <
-/// conf_level < 1.
+/// to each of the four outcomes. The interval is narrower than for independent series if most trials have the same
+/// outcome in both. Without trials the change is NaN, and the interval is [-1, 1]. Preconditions: gained + lost <= n, 0
+/// < conf_level < 1.
 Estimate paired_change(std::uint64_t gained, std::uint64_t lost, std::uint64_t n, double conf_level);
 
 }  // namespace poesy

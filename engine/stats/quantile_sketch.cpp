@@ -53,7 +53,7 @@ class MarkedPages {
 
  private:
   struct Side {
-    std::uint64_t first = 0;  ///< number of the first page
+    std::uint64_t first = 0;  ///< index of the first page
     std::vector<std::uint8_t> marks{};
   };
 

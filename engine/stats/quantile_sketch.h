@@ -31,8 +31,9 @@ struct Bucket {
 /// are between the smallest and the largest number. So buckets are narrow if the numbers are close to each other,
 /// whatever their mean, and a number far from all others costs one page. Merging is exact, because more numbers never
 /// make the scale finer, and counts are whole numbers: the result has the same bits for any order of merging and any
-/// division of the stream. Memory: 16 kB for the pages with numbers, and 2 kB for the places of all pages spanned. The
-/// coarsest scale has no such bound: it has two pages of 128 bytes for each power of two and sign.
+/// division of the stream. Memory: 16 kB for the pages with numbers, and 2 kB for the list of all pages between the
+/// smallest and the largest number. The coarsest scale has no such bound: it has two pages of 128 bytes for each power
+/// of two and sign.
 class QuantileSketch {
  public:
   /// The largest number of pages with numbers, unless even the coarsest scale needs more.

@@ -12,9 +12,9 @@ namespace poesy {
 /// quantity that is zero, even if the estimates are correlated.
 ///
 /// estimates: with intervals of skewed_mean() (yield_gradient.h) at conf_level and with these degrees of freedom. The
-/// result is false for NaN. bounds: the range to which the ends of all intervals were limited (within() in
-/// yield_gradient.h). If an end is at its bound, its distance from the estimate is replaced by that of the other end.
-/// The result is false for all if freedom < 1. Precondition: 0 < conf_level < 1.
+/// result is false for an estimate with a NaN. bounds: the range to which the ends of all intervals were limited
+/// (within() in yield_gradient.h). If an end is at its bound, its distance from the estimate is replaced by that of the
+/// other end. The result is false for all if freedom < 1. Precondition: 0 < conf_level < 1.
 ///
 /// A step needs the interval at a higher level, which follows from the one at conf_level: the difference of the
 /// distances from the estimate to both ends grows with the square of Student's quantile, and so does their product. An

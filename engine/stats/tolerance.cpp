@@ -30,7 +30,7 @@ std::vector<double> inverse(std::span<const double> index) {
   return values;
 }
 
-/// The median of the values of one dimension. Precondition: there is at least one.
+/// The median of the values that have this dimension. Precondition: there is at least one.
 double median_of(std::span<const double> values, std::span<const Dimension> dimensions, Dimension dimension) {
   std::vector<double> chosen;
   for (std::size_t p = 0; p < values.size(); ++p) {
@@ -106,7 +106,7 @@ std::vector<double> tolerances_within(const MeanSquare& response, std::span<cons
                                       std::span<const double> largest) {
   POESY_EXPECTS(!(square(limit) <= response.background));
   std::vector<double> tolerances(proportions.begin(), proportions.end());
-  std::vector<double> shared = tolerances;  // 0 for errors at their largest tolerance
+  std::vector<double> shared = tolerances;  // proportions of the errors, 0 for those already at their largest tolerance
   double left = square(limit) - response.background;
   for (bool again = true; again;) {
     const double multiple = std::sqrt(left / response.growth(shared));

@@ -34,29 +34,30 @@ struct ResponseStudy {
 
 /// The error relative to which equal-effect tolerances are set.
 struct ReferenceError {
-  std::size_t factor;  ///< number of the error in the study's list of errors, from 0
+  std::size_t factor;  ///< position of the error in the study's list of errors, from 0
   double tolerance;    ///< tolerance of this error, SI
 };
 
-/// The number (in the list, from 0) of the error with the smallest effect that is not zero. The effect is index x
+/// The position (from 0) of the error with the smallest effect that is not zero. The effect is sensitivity index x
 /// sigma. None if no error has an effect.
 std::optional<std::size_t> smallest_effect(std::span<const double> index, std::span<const double> sigma);
 
-/// [errors] t_p = (mu_ref / mu_p) t_ref, with the indices mu_p. It gives every error the effect of the reference (Du et
-/// al. 2022, Section 6.3, Table 10). All NaN if the reference has no effect.
+/// [errors] t_p = (mu_ref / mu_p) t_ref, with the indices mu_p. These tolerances give every error the effect of the
+/// reference (Du et al. 2022, Section 6.3, Table 10). All NaN if the reference has no effect.
 std::vector<double> equal_effect_tolerances(std::span<const double> index, const ReferenceError& reference);
 
 /// The mean square of a response over the poses, for independent errors of mean zero and standard deviations t_p:
 /// background + sum of effects_p t_p^2. Exact for a response that is linear in the errors or the norm of a linear
-/// function; for others see Response::mean_square_bound. Its root is at least the mean of the response (Jensen).
+/// function; for others see Response::mean_square_bound. The root of the mean square is at least the mean of the
+/// response (Jensen).
 struct MeanSquare {
   double background = 0.0;      ///< mean square over the poses of the response with all varied errors zero
   std::vector<double> effects;  ///< [errors] increase of the mean square per t_p^2; 0 for errors without effect
 
   /// The sum of effects_p t_p^2. Errors without effect do not count, even if their tolerance is infinite.
   double growth(std::span<const double> tolerances) const;
-  /// The mean square if some errors keep fixed sizes: their part becomes background. errors: numbers of these errors in
-  /// the list, from 0. sizes: [errors] standard deviations, of which only those of `errors` are used.
+  /// The mean square if some errors keep fixed sizes: their part becomes background. errors: positions of these errors
+  /// in the list, from 0. sizes: [errors] standard deviations, of which only those of `errors` are used.
   MeanSquare holding(std::span<const std::size_t> errors, std::span<const double> sizes) const;
   /// The mean square with these tolerances [errors].
   double at(std::span<const double> tolerances) const { return background + growth(tolerances); }

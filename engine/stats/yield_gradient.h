@@ -36,7 +36,7 @@ struct PowerSums {
 /// 1998, Am. Stat. 52, 119-126, add two successes and two failures for a share).
 inline constexpr double kAddedRejects = 4.0;
 
-/// With fewer rejects, the coverage of an interval of the gradient is below its level (theory.md).
+/// With fewer rejects than this, the coverage of an interval of the gradient may be below its level (theory.md).
 inline constexpr std::uint64_t kFewRejects = 20;
 
 /// The mean of a number over n machines, from the sums `powers`, with an interval at this level by the central limit
@@ -47,8 +47,8 @@ inline constexpr std::uint64_t kFewRejects = 20;
 Estimate skewed_mean(const PowerSums& powers, std::uint64_t machines, const ScoreMoments& added, double freedom,
                      double conf_level);
 
-/// The gradient of the yield Y, the share of good machines, by the size t of each error. It comes from the run that
-/// gives the yield, without a further solve. With the score S of an error (error_scores.h),
+/// The gradient of the yield Y, the share of good machines, by the size t of each error. The gradient comes from the
+/// run that gives the yield, without a further solve. With the score S of an error (error_scores.h),
 ///
 ///     dY/dt = -E[1_reject S] / t
 ///
@@ -58,7 +58,7 @@ Estimate skewed_mean(const PowerSums& powers, std::uint64_t machines, const Scor
 /// uses only the rejects.
 class ScoreSums {
  public:
-  explicit ScoreSums(ErrorScores scores);  ///< Empty sums for [errors] errors.
+  explicit ScoreSums(ErrorScores scores);  ///< Empty sums for the errors of `scores`.
 
   /// Adds machines. errors: [errors x machines], SI, row-major as SampleBlock::values, finite. rejected: [machines] 1
   /// or 0, see MachineBlock::rejected().

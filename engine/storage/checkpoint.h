@@ -119,9 +119,9 @@ class CheckpointFiles {
   std::vector<StoredState> states_;  ///< places of the states in held_
 };
 
-/// While the object exists, no other run can work on the same result and its checkpoints. It holds an advisory lock on
-/// RESULT.h5.lock, which the system releases at the latest when the process ends. On a file system without locks it
-/// does nothing. The constructor also removes temporary files that killed runs left.
+/// While the object exists, no other run can work on the same result and its checkpoints. The object holds an advisory
+/// lock on RESULT.h5.lock, which the system releases at the latest when the process ends. On a file system without
+/// locks the object does nothing. The constructor also removes temporary files that killed runs left.
 class RunLock {
  public:
   /// result_path: a path from check_output_path(), which follows symbolic links, so that a link and its target are one

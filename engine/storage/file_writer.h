@@ -18,7 +18,8 @@ struct OutputKind {
   std::string_view name;  ///< name of the kind, such as "result"
   /// Returns true if the existing file at `path` is of this kind, or empty.
   bool (*may_be_replaced)(const std::string& path);
-  /// The longest text that is appended to the name of the file to get the name of a related file, such as a checkpoint.
+  /// The longest ending that is appended to the name of the file for a related file: ".part.1" for the older checkpoint
+  /// of a result.
   std::string_view longest_end = {};
 };
 
@@ -57,7 +58,7 @@ class FileWriter {
  public:
   /// Throws FileError if there is something other than a plain file at the path (a folder, a device). The new file gets
   /// the permission bits of the file `like` if that exists, otherwise those of the file that it replaces, otherwise
-  /// those that the umask allows. fill: returns the random bytes of the temporary name. If there is already a file with
+  /// those that the umask allows. fill: makes the random bytes of the temporary name. If there is already a file with
   /// that name, it is not changed, and FileError is thrown.
   explicit FileWriter(std::string path, const std::string& like = {}, FillRandomly fill = fill_randomly);
   FileWriter(const FileWriter&) = delete;

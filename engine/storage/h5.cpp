@@ -317,7 +317,7 @@ void expect_hard(const Link& link, const std::string& path) {
   if (link.type == H5L_TYPE_SOFT) throw StrangeFile(path + " is a soft link");
   if (link.type == H5L_TYPE_EXTERNAL) throw StrangeFile(path + " is a link to another file");
   if (link.type != H5L_TYPE_HARD) throw StrangeFile(path + " is a link of another program's own kind");
-  // HDF5 would split such a name at its slashes, and follow links that have not been checked.
+  // HDF5 would split a name with slashes, and follow links that have not been checked.
   if (link.name.find('/') != std::string::npos || link.name == ".") throw StrangeFile(path + " has no name of its own");
 }
 
@@ -340,8 +340,8 @@ void expect_own_storage(hid_t dataset, const std::string& path) {
   }
 }
 
-/// The address of an object in the file. get: H5Oget_info2. It is a parameter so that the type `Info` is deduced, whose
-/// name changed in HDF5 1.12.
+/// The address of an object in the file. get: H5Oget_info2, from which the type `Info` is deduced; the name of this
+/// type changed in HDF5 1.12.
 template <class Info>
 haddr_t address_of(hid_t object, const std::string& path, herr_t (*get)(hid_t, Info*, unsigned)) {
   Info info{};
@@ -372,7 +372,7 @@ Handle group_properties(hid_t kind) {
 }
 
 /// Throws std::bad_alloc if less than kRoom of address space is left, because HDF5 1.10 may crash when it creates a
-/// file without enough memory. It needs half of kRoom.
+/// file without enough memory. HDF5 needs half of kRoom.
 void expect_room_for_file() {
   constexpr std::size_t kRoom = std::size_t{8} << 20U;
   if (!has_address_space(kRoom)) throw std::bad_alloc();

@@ -60,8 +60,8 @@ struct Value {
   std::vector<std::string> strings;  ///< [size(shape)] the texts
 };
 
-/// An HDF5 file. Numbers are stored little-endian in the width of T, and strings with variable length in UTF-8. Of each
-/// object, the order of creation is stored, but no time. Every member throws Error if a call of HDF5 fails.
+/// An HDF5 file. Numbers are stored little-endian in the width of T, and strings with variable length in UTF-8. The
+/// order in which objects were created is stored, but not the time. Every member throws Error if a call of HDF5 fails.
 class File {
  public:
   static File in_memory();  ///< An empty file in memory.

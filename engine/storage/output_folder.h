@@ -27,8 +27,8 @@ void make_folder(const std::string& folder);  ///< Makes a folder if it is missi
 class OutputFolder {
  public:
   /// path: the folder, which need not exist. result: content_sha256 of the result; if it is not known (empty), fill()
-  /// removes all files that the manifest lists. Throws InputError if the folder has a poesy_manifest.txt that poesy did
-  /// not write.
+  /// removes all files that the manifest lists, except those that are claimed. Throws InputError if the folder has a
+  /// poesy_manifest.txt that poesy did not write.
   OutputFolder(std::string path, const std::string& result);
 
   /// Announces that the command will write this file. Throws InputError if the file exists and must not be replaced:

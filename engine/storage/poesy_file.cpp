@@ -113,7 +113,8 @@ void limit(int resource, rlim_t most) {
   ::setrlimit(resource, &limits);
 }
 
-/// Isolates the child process: it runs no signal handler of the parent, shows no output, and ends after limited time.
+/// Isolates the child process: it runs no signal handler of the parent, shows no output, and has limits on processor
+/// time and memory.
 void confine(rlim_t file_bytes) {
   for (int signal = 1; signal < NSIG; ++signal) std::signal(signal, SIG_DFL);
   const int nothing = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
@@ -177,8 +178,8 @@ int status_of(pid_t child) {
   return status;
 }
 
-/// Throws FileError if the memory limit of this process is below the memory that reading an intact file may take. A
-/// failed child is then no sign of damage, because HDF5 may crash without memory.
+/// Throws FileError if the memory limit of this process is below the memory that reading an intact file may take. The
+/// failure of the child process then does not show that the file is damaged, because HDF5 may crash without memory.
 void refuse_for_little_memory(const std::string& path, rlim_t file_bytes) {
   constexpr rlim_t kMega = 1'000'000;
   const rlim_t most = address_space() + kTrialBytes + 16 * file_bytes;

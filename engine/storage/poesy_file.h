@@ -23,9 +23,9 @@ inline constexpr std::int64_t kMajorVersion = 1;
 /// The minor version of the format. It grows with additions that readers may ignore.
 inline constexpr std::int64_t kMinorVersion = 0;
 
-/// Opens a result or a shard. Throws FileError if the file is of another type, has another major version, or is not a
-/// plain tree (h5::File::expect_plain_tree). So callers never read data outside the file. Throws h5::Error if HDF5
-/// reports that the file is damaged.
+/// Opens a result or a shard. Throws FileError if HDF5 cannot open the file, or if the file is of another type, has
+/// another major version, or is not a plain tree (h5::File::expect_plain_tree). So callers never read data outside the
+/// file. Throws h5::Error if HDF5 opens the file but then reports that it is damaged.
 h5::File open_poesy_file(const std::string& path);
 
 /// The advice for a damaged file.

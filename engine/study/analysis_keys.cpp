@@ -113,8 +113,8 @@ KeyValue<Study> fixed_samples() {
   return value;
 }
 
-/// Reads the key `samples`: a number, or the table of adaptive samples. Throws InputError if both this table and the
-/// key `conf_level` state the confidence level of intervals.
+/// Reads the key `samples`: a number, or the table of adaptive samples. Throws InputError if this table and the key
+/// `conf_level` state different confidence levels of intervals.
 void read_samples(const StudyValue& value, Study& study, const Reading& reading) {
   Analysis& analysis = study.analysis;
   if (!value.is_section()) {
@@ -137,7 +137,7 @@ void read_samples(const StudyValue& value, Study& study, const Reading& reading)
             "write the level of the intervals once");
 }
 
-/// The key `samples` as lines of the resolved text. Each key of adaptive samples has its own line, so that a
+/// The key `samples` as lines of the study's resolved_text(). Each key of adaptive samples has its own line, so that a
 /// line-by-line comparison of two studies shows which key differs.
 std::string samples_lines(const Study& study) {
   const Analysis& analysis = study.analysis;
@@ -205,8 +205,8 @@ std::string background_lines(const Study& study) {
          keys_text(background_keys(), background);
 }
 
-/// The template's lines of the key `background`. They show the kind's usual set of constant errors, or an example in a
-/// comment if the model lacks this set.
+/// The template's lines of the key `background`. They show the set of constant errors StudyKind::usual_background, or
+/// an example in a comment if the model lacks this set.
 std::string shown_background(const TemplateLines& lines, const Study& study) {
   const std::string_view held = study.analysis.kind->usual_background;
   return lines.explanation_lines("analysis", "background") + lines.keys_lines("analysis.background") +
@@ -233,7 +233,7 @@ std::string shown_limits(const TemplateLines& lines, const Study& study) {
   return template_limits(lines, study.model(), "# ");
 }
 
-/// The keys of [analysis] that several kinds have, in the order of the reference.
+/// The keys of [analysis] that several kinds of study have, in the order of the reference.
 std::vector<StudyRow> shared_rows() {
   return {
       StudyRow{

@@ -17,7 +17,7 @@
 namespace poesy {
 namespace {
 
-/// A number is doubtful if its magnitude is more than this many times the usual size.
+/// A number is doubtful if its magnitude is more than this many times the size with which it is compared.
 constexpr double kFarBeyond = 10.0;
 constexpr double kRounding = 1e-9;  ///< tolerance at the ends of a workspace, as a share of its range
 constexpr int kDigits = 6;

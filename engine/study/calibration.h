@@ -15,7 +15,8 @@
 
 namespace poesy {
 
-/// Errors that a calibration fits together by one number. Each of these errors is its own weight times the number.
+/// Errors that a calibration fits together by one number. Each of these errors is the number times the weight of the
+/// error.
 struct FittedErrors {
   std::string name;                       ///< name of the combination of errors, or of the single error
   std::vector<FactorIndex> factors = {};  ///< fitted errors, at least one, all different
@@ -36,14 +37,14 @@ enum class MeasuringFrame {
 /// The unknown properties of the measured point of the platform.
 enum class MeasuredTarget {
   known,  ///< nothing: the point is the tool's tip, or the platform's origin
-  point,  ///< the position of the point
+  point,  ///< the position of the point (3 numbers)
   rigid   ///< position of the point and orientation of the measured target (6 numbers)
 };
 
 /// What is known of the fitted errors before anything is measured.
 enum class PriorKnowledge {
   none,       ///< nothing; the errors are fitted by least squares
-  tolerances  ///< their distributions in [errors], which the fit takes as a Bayesian prior
+  tolerances  ///< the distributions of the fitted errors in [errors], used as a Bayesian prior
 };
 
 /// What is known about the standard deviations of measured values.

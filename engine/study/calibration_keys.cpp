@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::int64_t kMostRepeats = 1'000'000;
 constexpr std::int64_t kMostNext = 1000;
-/// The six responses for which the word "pose" in the key `measured` stands.
+/// The six responses that the word "pose" in the key `measured` selects.
 constexpr std::array<std::string_view, 6> kWholePose{"x", "y", "z", "theta_x", "theta_y", "theta_z"};
 
 /// What the readers of the keys of [analysis.calibration] need in addition to the key's value.

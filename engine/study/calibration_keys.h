@@ -10,8 +10,8 @@ StudyRow calibration_row();
 /// The description of [analysis.calibration] and its inner tables.
 StudyTables calibration_tables();
 
-/// Throws InputError if the study has a calibration that does not state what is measured. For kinds of study that
-/// simulate calibrations. analysis: the section [analysis].
+/// Throws InputError if the study has a calibration that does not state what is measured. Called for kinds of study
+/// that simulate calibrations. analysis: the section [analysis].
 void check_simulated(const Study& study, const StudySection& analysis);
 
 /// Does the check of check_simulated() for a study of calibrated machines. Also throws InputError if the study has a
@@ -19,7 +19,7 @@ void check_simulated(const Study& study, const StudySection& analysis);
 void check_simulated_machines(const Study& study, const StudySection& analysis);
 
 /// Throws InputError if the study has a calibration, but its kind of study does not simulate calibrations. kinds: all
-/// kinds, of which the message names those that do. analysis: the section [analysis].
+/// kinds of study; the message names those that simulate calibrations. analysis: the section [analysis].
 void refuse_calibration(const StudySection& analysis, const Study& study, const StudyKinds& kinds);
 
 /// The errors for which [errors] states a distribution, ascending. If [analysis] has the key `factors`, only errors

@@ -418,8 +418,8 @@ void check_override(const StudySection& overrides, const Study& study) {
   overrides.allow(known, "factor");
 }
 
-/// Reads a value of [errors.override]. usual: what the error has without this value. If the value has only the key
-/// `draws`, the error keeps the usual distribution.
+/// Reads a value of [errors.override]. usual: the distribution and the draws of the error if [errors.override] does not
+/// name it. If the value has only the key `draws`, the error keeps the usual distribution.
 StatedError read_own_error(const StudyValue& value, Dimension dimension, StudyUse use, const StatedError& usual,
                            std::vector<std::string>& doubts) {
   if (!value.is_section() || value.section().keys() != std::vector<std::string>{"draws"}) {
@@ -598,7 +598,7 @@ std::string error_text(const StatedError& error, Dimension dimension, ValueText 
 
 /// The distribution that most factors of this dimension have, and whether they are drawn at each pose or once for each
 /// machine. Factors whose distribution follows from a tolerance zone, and factors that given machines state, do not
-/// count. The resolved text states the result once, as `linear` or `angular`.
+/// count. The study's resolved_text() states the result once, as `linear`, `angular` or `relative`.
 StatedError commonest_error(const Study& study, Dimension dimension) {
   const std::vector<Factor>& factors = study.model().factors;
   const std::vector<std::optional<Distribution>> zones = distributions_by_zones(study);
@@ -673,8 +673,8 @@ StudyRow relative_row() {
   return row;
 }
 
-/// Throws InputError at the value that determines the factor's distribution: at the first of `keys` that the study
-/// sets, otherwise at sigma.
+/// Throws InputError at the value that determines the factor's distribution: at errors.zones for an error in a
+/// tolerance zone, otherwise at the first of `keys` that its distribution has, or at sigma if it has none of them.
 [[noreturn]] void refuse_distribution(const StudySection& root, const Factor& factor, bool is_in_zone,
                                       const std::string& problem, std::span<const std::string_view> keys) {
   const StudySection errors = root.section("errors");

@@ -55,7 +55,7 @@ std::vector<SketchedPoint> points_with_responses(const Sketch& home) {
 }
 
 /// Returns true if the response with this index is a displacement of this point of the platform, or if the study
-/// defines it from responses of which one is.
+/// defines the response from others, one of which is such a displacement.
 bool depends_on(const std::string& point, std::size_t response, const Study& study) {
   const std::vector<Response>& responses = study.model().responses;
   const std::string& name = responses[response].name;

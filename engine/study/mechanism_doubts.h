@@ -25,18 +25,18 @@ std::vector<std::string> mechanism_doubts(const MechanismChoice& mechanism, cons
 /// wrong (unusual_workspace()). poses: the poses that [poses] selects.
 std::vector<std::string> workspace_doubts(const Study& study, const PoseSet& poses);
 
-/// Questions about the standard deviations of drawn errors, at most one for lengths and one for angles. It names the
-/// first error whose standard deviation is more than a tenth of Model::error_bound() or, for an angle, more than an
-/// eighteenth (10 deg of half a turn). There are none if the kind of study has StudyKind::finds_sizes. model: the
-/// mechanism of the study.
+/// Questions about the standard deviations of drawn errors, at most one for lengths and one for angles. A question
+/// names the first error whose standard deviation is more than a tenth of Model::error_bound() or, for an angle, more
+/// than an eighteenth of it (10 deg if the bound is half a turn). There are no questions if the kind of study varies no
+/// errors or has StudyKind::finds_sizes. model: the mechanism of the study.
 std::vector<std::string> size_doubts(const Study& study, const Model& model);
 
 /// A warning if the study corrects the drives at each pose (`calibrated = true`), but limits the displacement of a
-/// point that is far from the points for which this correction is best (Model::metric_points()). A point is far if
-/// their root mean square distance from it is more than a twentieth of the distance from it to the farthest joint.
-/// Empty if no such point is limited. Also empty if the mechanism is not from a file, because its points cannot be
-/// changed, or if its platform has six degrees of freedom, because the correction then removes the displacement of
-/// every point to first order. model: the mechanism of the study.
+/// point that is far from the points for which this correction is best (Model::metric_points()). A point is far from
+/// them if their root mean square distance from the point is more than a twentieth of the distance from the point to
+/// the farthest joint. Empty if no such point is limited. Also empty if the mechanism is not from a file, because its
+/// points cannot be changed, or if its platform has six degrees of freedom, because the correction then removes the
+/// displacement of every point to first order. model: the mechanism of the study.
 std::string correction_doubt(const Study& study, const Model& model);
 
 }  // namespace poesy

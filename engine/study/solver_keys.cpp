@@ -117,8 +117,8 @@ std::string shown_tolerance(const TemplateLines& lines, const Study& study) {
   return lines.explained("solver", "tolerance", "tolerance = " + shortest(study.model().tolerance));
 }
 
-/// The key `series` in the resolved text. It is empty for the default, so that the resolved texts of studies without
-/// this key did not change when the key was added.
+/// The line of the key `series` in the study's resolved_text(). It is empty for the default, so that the text of a
+/// study without this key is the same as before the key was added.
 std::string series_line(const Study& study) { return study.solver.series ? "" : "series = false\n"; }
 
 std::string shown_series(const TemplateLines& lines, const Study& study) {

@@ -127,7 +127,7 @@ enum class Draws {
 enum class Judge {
   rms,    ///< root mean square of the response over all draws at all poses
   share,  ///< magnitude that the stated share of the draws does not exceed at the worst pose
-  yield   ///< share of machines within all limits at all poses; needs Draws::per_machine
+  yield   ///< share of machines that keep all limits (ValueLimit::keeps); needs Draws::per_machine
 };
 
 struct StudyKind;
@@ -136,7 +136,7 @@ struct CalibrationTable;
 /// The analysis of a study: what is computed, and from which errors.
 struct Analysis {
   const StudyKind* kind = nullptr;  ///< kind of the study; not null in a study that was read
-  /// Errors that the study varies, or tries one after the other; empty if another key of its kind names them.
+  /// Errors that the study varies, or tries one after the other; empty if another key of this kind of study names them.
   std::vector<FactorIndex> factors;
   std::size_t samples = 1000;  ///< number of samples at each pose, if errors vary
   /// Rule of adaptive samples, with `samples` as the largest number; none: the number of samples is fixed.
@@ -169,7 +169,7 @@ Options& asked_of(Analysis& analysis) {
 /// How samples without a solution are treated.
 enum class NotConverged {
   exclude,  ///< samples that are not solved are left out of all statistics
-  include   ///< the last iterate counts as a result, as in the published procedure
+  include   ///< the last iterate is used if a solve reached the iteration limit; others are left out
 };
 
 /// The content of a study file, complete and consistent. engine/study/study_file.h reads one.

@@ -26,8 +26,8 @@ bool begins_like_hdf5(const std::string& path) {
   return file.is_open() && file.read(0, std::as_writable_bytes(std::span(begin))) && begin == kSignature;
 }
 
-/// Throws InputError if the study asks for more numbers in the result than kMostCells, or for more solves than
-/// kMostSolves.
+/// Throws InputError if the result would have more than kMostCells values of one response, or if the study asks for
+/// more than kMostSolves solves.
 void check_size(const StudySection& root, const Study& study) {
   const bool from_file = study.poses.select == PoseSelection::Select::file;
   const double poses = static_cast<double>(from_file ? study.poses.from_file.points.size() : study.poses.count);

@@ -56,7 +56,7 @@ enum class Varies {
   together     ///< all factors vary together, drawn from their distributions
 };
 
-/// The number of values and of solves of a study at each pose, with words that say of what each number is the product.
+/// The number of values and of solves of a study at each pose, each also as a product in words.
 struct AtPose {
   double values;               ///< number of values of one response in the result
   std::string_view of_values;  ///< `values` as a product in words: "factors"
@@ -97,7 +97,8 @@ struct StudyKind {
   std::optional<Refusal> (*refusal)(const ModelDescription& model) = nullptr;
   /// The reason why there is no template of this kind for this model; none if there is one.
   std::optional<Refusal> (*no_template)(const ModelDescription& model) = nullptr;
-  /// Completes the study and checks keys that depend on each other. Throws InputError.
+  /// Sets members of the study that follow from several keys, and checks keys that depend on each other. Throws
+  /// InputError.
   void (*complete)(Study& study, const Reading& reading) = nullptr;
   /// Throws InputError if an error in the kind's own keys is too large for this model (Model::error_bound).
   void (*check_errors)(const StudySection& analysis, const Study& study, const Model& model) = nullptr;
@@ -142,7 +143,8 @@ KeyValue<Study> asked_value(KeyValue<Options> value) {
   return whole;
 }
 
-/// The keys of the tables that each study has, as rows; analysis_keys() gives the keys of [analysis] for this kind.
+/// The keys of the tables that each study has, as rows; analysis_keys() returns the keys of [analysis] for one kind of
+/// study.
 /// @{
 const StudyRows& file_keys();
 const StudyRows& mechanism_keys();
@@ -162,8 +164,8 @@ StudyTables errors_tables();
 StudyTables analysis_tables(std::span<const StudyKind* const> kinds, std::span<const std::string_view> order);
 /// @}
 
-/// The key of [analysis] with this name as several kinds share it, which a kind may copy and change. Precondition: the
-/// key exists.
+/// The key of [analysis] with this name that several kinds of study share. A kind may copy and change it. Precondition:
+/// the key exists.
 StudyRow shared_analysis_row(std::string_view name);
 
 /// Each of these functions reads one section of a study file, or one table of it. They throw InputError at the first
@@ -216,8 +218,9 @@ void check_zones(const Study& study, const Reading& reading);
 /// Returns true if [errors] states the size of an error, by its dimension or by a key of [errors.override].
 bool states_size(const StudySection& errors, const Factor& factor);
 /// Throws InputError if an error of a feature varies but neither errors.zones nor another key states its size, because
-/// the default size of lengths makes no sense for it. For other errors without a stated size, adds a warning that names
-/// the default to study.doubts. of_parts: errors that are not checked, because the kind of study finds their sizes.
+/// the default size of lengths makes no sense for it. For other errors without a stated size of a mechanism from a
+/// file, adds a warning that names the default to study.doubts. Does nothing unless the study is read for a run.
+/// of_parts: errors that are not checked, because the kind of study finds their sizes.
 void check_error_sizes(Study& study, const Reading& reading, std::span<const FactorIndex> of_parts = {});
 /// Throws InputError at the key `correlated` if correlated errors do not all vary together.
 void check_correlated(const Study& study, const Reading& reading);
@@ -250,8 +253,8 @@ std::string example_limits(const ModelDescription& model);
 /// Lines of a template that list the model's responses in a comment, show example_limits() in a line "limits = ...",
 /// and explain the key. sign: text before the line "limits = ...", such as "# ". Empty for a model without responses.
 std::string template_limits(const TemplateLines& lines, const ModelDescription& model, std::string_view sign);
-/// A quantity of this number of units in which results show the dimension (mm, deg, N, ...), as templates write it: "1
-/// mm" in quotes.
+/// A quantity as templates write it: "1 mm" in quotes. units: its value in the unit in which results show the dimension
+/// (mm, deg, N, ...).
 std::string example_size(Dimension dimension, double units);
 
 /// Throws InputError if an error of the study is too large for this model (Model::error_bound), at the place of the key

@@ -54,7 +54,7 @@ struct TableColumn {
   double si = 1.0;                          ///< factor that converts the column's numbers to SI
   Place place = {};                         ///< place of the title, for a column of text
   bool may_name_rows = false;               ///< true if people give this title to columns of labels: "Part No."
-  bool bare = false;                        ///< true if the title states no unit
+  bool bare = false;                        ///< true if the numbers need a unit and the title states none
 
   /// The title with the unit in which results show this dimension: "z [mm]".
   std::string with_unit() const { return std::string(name) + " [" + std::string(display_unit(dimension).name) + "]"; }
@@ -301,8 +301,8 @@ bool are_labels(const std::vector<std::string_view>& cells) {
 
 /// The labels of the rows of a table: the column of labels, if there is one. Otherwise the first column with
 /// `may_name_rows` whose cells may be labels (are_labels()), otherwise the first other column of text whose cells may
-/// be. The latter needs two rows, because a single text always differs from all others. Empty if there is no such
-/// column.
+/// be labels. Such a column counts only if it has two rows or more, because a single cell has no other cell to equal.
+/// Empty if there is no column of labels.
 RowLabels labels_of(std::span<const TableColumn> columns, Rows rows) {
   using Role = TableColumn::Role;
   const auto label = std::ranges::find(columns, Role::label, &TableColumn::role);

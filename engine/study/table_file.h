@@ -23,7 +23,7 @@ struct ErrorTable {
   std::vector<double> values;        ///< [rows x factors] errors, row-major, SI
   std::size_t rows = 0;              ///< number of rows
   RowLabels labels{};                ///< labels of the rows
-  std::vector<bool> bare{};  ///< [factors] true if the file states no unit for the column; empty if no file was read
+  std::vector<bool> bare{};  ///< [factors] true if the column lacks a unit that it needs; empty if no file was read
 
   /// The values of one factor in all rows, SI. Precondition: the factor is in `factors`.
   std::vector<double> column(FactorIndex factor) const;

@@ -103,24 +103,24 @@ struct Load {
   bool acts_on(const std::vector<Body>& bodies) const;
 };
 
-/// The source of the limbs' compliance C.
+/// What determines the compliance matrices C of the limbs.
 enum class Metric {
-  /// No stiffness is known and no load acts; the compliances follow from the metric of the platform's points, see
-  /// nominal().
+  /// No stiffness is known and no load acts; the matrices C follow from the mean square displacement of the platform's
+  /// points, see nominal().
   platform,
-  stiffness  ///< the compliances follow from the stiffness of bearings, links and limbs
+  stiffness  ///< the matrices C follow from the stiffness of bearings, links and limbs
 };
 
 /// A mechanism of limbs that connect bodies.
 struct Assembly {
   std::vector<Body> bodies;  ///< base, platform, then the other bodies
   std::vector<Limb> limbs;   ///< limbs, in the order of the file
-  /// Points of the platform that define its metric, in the platform's frame (m); not all on a line.
+  /// Points of the platform, in its frame (m), not all on a line. Their mean square displacement is the metric.
   std::vector<Vector3> points;
   std::optional<Vector3> tool = {};  ///< tool point, in the platform's frame (m)
   Load load = {};                    ///< gravity and external loads
   Metric metric = Metric::platform;  ///< whether compliances follow from `points` or from stiffness
-  double reach = 1.0;                ///< unit of lengths in the solvers (m)
+  double reach = 1.0;                ///< size of the mechanism (m); unit of lengths in the solvers
 
   /// The number of independent loops of limbs.
   std::size_t loops() const { return limbs.size() - (bodies.size() - 1); }

@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::size_t kTerms = KernelStart::kTerms;
 
-/// If one of the last three coefficients of a series is larger than this (in rad, or in units of the reach), the states
-/// do not vary smoothly with the error, and the series is not used.
+/// If one of the last three coefficients of a series (KernelStart) is larger than this (in rad, or in units of the
+/// reach), the states do not vary smoothly with the error, and the series is not used.
 constexpr double kTrustedTail = 1e-6;
 
 double chebyshev(std::size_t n, std::size_t node) {

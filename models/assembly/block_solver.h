@@ -54,7 +54,7 @@ class BlockSolver {
   std::vector<double> nearing_;
   std::vector<std::uint32_t> iterations_;  ///< [stride] iterations of each sample
   std::vector<double> states_;             ///< [rows of a state x KernelStart::kTerms] states at the Chebyshev nodes
-  std::vector<double> mismatch_;           ///< [6 limbs x stride] mismatch, see KernelBlock
+  std::vector<double> mismatch_;           ///< [6 limbs x stride] KernelBlock::mismatch
 };
 
 }  // namespace poesy::assembly

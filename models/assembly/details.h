@@ -16,9 +16,10 @@ namespace poesy::assembly {
 std::vector<double> pair_mismatch(const AssemblyModel& model, std::span<const Screw> mismatch,
                                   chain::Fidelity fidelity);
 
-/// Model::norm_of_details for a response: a matrix with six columns for each pair, row by row. Empty for responses that
-/// do not measure mismatch (those from index kDeformations on), and if there are no pairs. To first order the xi of all
-/// n limbs add up to 0, so the sum of |xi|^2 over the limbs is the sum of |delta_mu|^2 over all pairs divided by n.
+/// Model::norm_of_details for a response: the matrix, row by row, that maps the mismatches of all pairs (six columns
+/// for each pair) to a vector whose norm is the response. Empty for responses that do not measure mismatch (those from
+/// index kDeformations on), and if there are no pairs. To first order the xi of all n limbs add up to 0, so the sum of
+/// |xi|^2 over the limbs is the sum of |delta_mu|^2 over all pairs divided by n.
 std::vector<double> norm_of_details(const AssemblyModel& model, std::size_t response, std::span<const double> pose);
 
 }  // namespace poesy::assembly

@@ -7,7 +7,7 @@
 
 namespace poesy::assembly {
 
-/// Computes the fixed frames of all limbs with errors.
+/// Computes the fixed frames of all limbs for given errors.
 class ErrorFrames {
  public:
   explicit ErrorFrames(const AssemblyModel& model);  ///< The model must outlive this object.

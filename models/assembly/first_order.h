@@ -10,8 +10,8 @@ namespace poesy::assembly {
 /// The first-order effects of errors in fixed frames at a pose and, separately, the effects of the load.
 class FirstOrder {
  public:
-  /// Sets up the equations at the pose. ranks: [limbs] rank of each limb's passive columns. All arguments must outlive
-  /// this object.
+  /// Sets up the equations at the pose. ranks: [limbs] rank of the columns of each limb's passive joints. All arguments
+  /// must outlive this object.
   FirstOrder(const Assembly& assembly, const Nominal& pose, std::span<const std::size_t> ranks);
 
   /// Returns true if the equations have a unique solution.

@@ -9,10 +9,10 @@
 namespace poesy::assembly {
 
 /// Solves the equations of Solver for batches of samples of an assembly. A sample starts at the first-order solution,
-/// or at the state that the series of KernelStart gives. The wrenches p are unknowns of their own. If they were
-/// replaced by C^-1 xi, rounding would appear as force, and only samples with small errors would converge. The type
-/// `Step` is ConstantStep, MeetStep or OwnStep; a round is one iteration. A lane depends only on its own sample, and
-/// does not change any more after has_settled() is true for it.
+/// or at the state that the series of KernelStart gives. The wrenches of the limbs are unknowns of their own. If
+/// they were computed as C^-1 xi, with compliance C and mismatch xi, rounding errors of xi would appear as forces, and
+/// only samples with small errors would converge. The type `Step` is ConstantStep, MeetStep or OwnStep; a round is one
+/// iteration. A lane depends only on its own sample, and does not change any more after has_settled() is true for it.
 template <class T, class Step>
 class AssemblyKernel {
  public:

@@ -101,8 +101,8 @@ class ConstantStep {
 
   std::size_t first_body_row() const { return problem_.size - 6 * (problem_.bodies.size() - 1); }
 
-  /// Solves the equations. If limbs have no wrenches, the bodies' rows of the right side are 0, and lambda is not
-  /// computed.
+  /// Solves the equations. If limbs have no wrenches, the bodies' rows of the right side are 0, and the wrench
+  /// coordinates lambda are not computed.
   void solve_linear() {
     const std::size_t columns = problem_.carries ? problem_.size : first_body_row();
     for (std::size_t row = problem_.carries ? 0 : first_body_row(); row < problem_.size; ++row) {

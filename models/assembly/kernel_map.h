@@ -9,7 +9,8 @@
 
 namespace poesy::assembly {
 
-/// Computes the first-order outcomes of batches of samples; see KernelMap.
+/// Computes the first-order outcomes of batches of samples. The coordinates are those of KernelMap: twists of bodies,
+/// stresses and joint displacements.
 template <class T>
 class KernelMapper {
  public:

@@ -19,8 +19,8 @@ namespace poesy::assembly {
 /// norm | | of a twist is proportional to the root mean square displacement of the platform's points by this twist. At
 /// the solution the minimum is zero, so steps with new projections converge quadratically. New projections are made in
 /// the first, the fifth, the ninth round (iteration) and so on. Idle freedoms, motions of passive joints that move no
-/// body, make S^T S singular; constant terms of rank one are added for them. A lane is refused if a pivot is not safely
-/// positive.
+/// body, make S^T S singular; constant terms of rank one are added for them. A lane is refused, and its
+/// sample left to another solver, if a pivot is not safely positive.
 template <class T>
 class MeetStep {
  public:

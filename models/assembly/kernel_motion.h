@@ -75,7 +75,7 @@ template <class T>
   }
 }
 
-/// Computes the twist [w; v] of a joint with the frame g: a column of J.
+/// Computes the twist [w; v] per unit displacement of a joint with the frame g, at the origin of the kernel's frame.
 template <class T>
 [[gnu::always_inline]] inline void twist_of(const KernelJoint& joint, const LaneMotion<T>& g, T* twist) {
   const T axis[3] = {g.r[2], g.r[5], g.r[8]};

@@ -23,8 +23,8 @@ inline constexpr double kSafePivot = 1e-5;
 ///
 /// are solved for dq, with a matrix that has a row for each passive joint of the limb. Six equations for each body
 /// remain. Idle freedoms, motions of passive joints that move no body, make the limb's matrix singular; constant terms
-/// of rank one are added for them. A lane is refused if a pivot is not safely positive, because then no stable
-/// equilibrium is near.
+/// of rank one are added for them. A lane is refused, and its sample left to another solver, if a pivot is not
+/// safely positive, because then no stable equilibrium is near.
 template <class T>
 class OwnStep {
  public:

@@ -29,8 +29,8 @@ struct KernelError {
   bool turns;          ///< true if the error has a rotation: an angle varies or is not zero
   bool inverted;       ///< true if the inverse is applied, as in the limb's last frame
   int varied[6];       ///< row of KernelBlock::values for each component of [omega; v]; -1 if the component is constant
-  double unit[6];      ///< factor of each varied value
-  double constant[6];  ///< value of each constant component
+  double unit[6];      ///< factor from each varied value to the component (rad, or units of the reach)
+  double constant[6];  ///< value of each constant component (rad, or units of the reach)
 };
 
 /// A constant motion, followed by the error of a frame.
@@ -120,30 +120,32 @@ struct KernelReport {
   }
 };
 
-/// The map from the varied values to first-order outcomes: coordinates = offset + matrix * values. The coordinates are,
-/// in this order, the twists of the bodies without the base [6 x (bodies - 1)], the stresses, and the displacements of
-/// passive joints.
+/// The map from the varied values to first-order outcomes: coordinates = offset + matrix * u, where u is the vector of
+/// the varied values, each multiplied by its factor in `units`. The coordinates are, in this order, the twists of the
+/// bodies without the base [6 x (bodies - 1)], the stresses, and the displacements of passive joints.
 struct KernelMap {
   static constexpr std::size_t kRows = 12;  ///< number of coordinates that are computed together
   std::size_t entries;                      ///< number of varied values of a sample
   std::size_t stresses;        ///< number of stresses: the coordinates of wrenches by which limbs load each other
   std::vector<double> units;   ///< [entries] factor of each varied value
-  std::vector<double> offset;  ///< [coordinates, padded to whole kRows] coordinates if the varied errors are 0
-  /// [blocks of kRows coordinates][entries][kRows] Change of each coordinate per unit of each varied value; the last
+  std::vector<double> offset;  ///< [coordinates, padded to whole kRows] coordinates if the varied values are 0
+  /// [blocks of kRows coordinates][entries][kRows] Change of each coordinate per unit of each entry of u; the last
   /// block is padded.
   std::vector<double> matrix;
   std::vector<double> wrenches;  ///< [6 limbs x stresses] wrenches per unit of each stress, row by row
   std::vector<double> by_load;   ///< [6 limbs] wrenches without errors, by load and rounded numbers
 };
 
-/// Starting points of solves with one varied error: Chebyshev series of the state in t = scale (value - centre), for
-/// |t| <= 1. A state consists of the twists of the bodies without the base [6 x (bodies - 1)], the wrenches of the
-/// limbs [6 x limbs], and the displacements of the passive joints from the nominal pose.
+/// Starting points of solves with one varied error: Chebyshev series of the state in t = scale (x - centre), for
+/// |t| <= 1. Here x is the first component of a frame's error that the varied error changes: the first row of
+/// KernelBlock::values times KernelMap::units[0]. A state consists of the twists of the bodies without the base [6 x
+/// (bodies - 1)], the wrenches of the limbs [6 x limbs], and the displacements of the passive joints from the nominal
+/// pose.
 struct KernelStart {
   static constexpr std::size_t kTerms = 16;  ///< number of terms of a series
   bool is_used;                              ///< true if the samples start from the series
-  double centre;                             ///< centre of the error's range
-  double scale;                              ///< 1 / (half the width of the range)
+  double centre;                             ///< value of x if the varied error is 0
+  double scale;                              ///< 1 / (change of x from the centre to the end of the error's range)
   std::vector<double> coefficients;          ///< [numbers of a state x kTerms] coefficients of the series
 };
 
@@ -167,7 +169,7 @@ struct KernelProblem {
   /// Factors, at most 1, from the components of a twist to measured coordinates. The sum of squares of these
   /// coordinates is proportional to the square of the twist in the metric.
   double measured[6];
-  double unmeasured[6];  ///< inverses of the factors
+  double unmeasured[6];  ///< inverses of the factors `measured`
   bool wants_wrenches;   ///< true if a sample converges only when its wrenches do
   double tolerance;      ///< tolerance of the changes of bodies and joints, in units of the reach
   int most_rounds;       ///< number of rounds after which a sample is left to another solver

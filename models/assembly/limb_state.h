@@ -14,9 +14,9 @@ struct LimbState {
   std::vector<Transform> before;  ///< [joints] base_T_joint before the joint moves
   std::vector<Transform> after;   ///< [joints] base_T_joint after the joint has moved
   Transform end;                  ///< pose of the limb's end; if the limb exerts no wrench, that of the body there
-  Columns passive;                ///< J: twists of the end by the passive joints, one in each column
+  Columns passive;                ///< J: twists of the end per unit displacement of each passive joint
 
-  /// The twist of the limb's end by joint j, passive or driven.
+  /// The twist of the limb's end per unit displacement of joint j, passive or driven.
   Screw twist(const chain::Joint& joint, std::size_t j) const { return chain::spatial_column(joint, before[j]); }
 };
 

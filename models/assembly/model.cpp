@@ -52,8 +52,8 @@ class AssemblyEvaluator final : public Evaluator {
   std::map<std::vector<double>, PoseProblem> problems_;
 };
 
-/// The solution for a single machine, whose errors are sample.errors; no error varies. The solvers are those that
-/// BlockSolver uses if the kernel fails.
+/// The solution for a single machine with the errors sample.errors. `sample` has no varied errors. The solvers are
+/// those that BlockSolver uses for samples that the kernel does not solve.
 Solution exact_solution(const AssemblyModel& model, const Nominal& at, const SampleBlock& sample,
                         const SolverOptions& options) {
   Closure closure(model, at);

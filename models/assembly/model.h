@@ -15,7 +15,7 @@ namespace poesy::assembly {
 struct AssemblyModel {
   Assembly assembly;                     ///< perfect limbs that connect bodies
   Report report;                         ///< choice of responses
-  std::vector<chain::ErrorTerms> terms;  ///< [errors] terms of each error
+  std::vector<chain::ErrorTerms> terms;  ///< [errors] components of frames' errors that each error changes
   std::vector<std::size_t> ranks;        ///< [limbs] rank of the columns of each limb's passive joints
   std::size_t idle = 0;                  ///< number of motions of passive joints that move no body
   bool deforms = true;                   ///< true if limbs deform each other or have stiffness, so mismatch is reported

@@ -27,8 +27,8 @@ Nominal nominal(const Assembly& assembly, std::span<const double> displacements)
 /// through bodies that only two limbs touch. The platform does not count as such a body.
 std::vector<std::size_t> limbs_in_a_row(const Assembly& assembly);
 
-/// [limbs] The rank of the passive columns of each limb, about the platform's origin and with lengths in units of the
-/// reach. Singular values below the threshold times the largest count as 0.
+/// [limbs] The rank of the columns (twists) of each limb's passive joints, about the platform's origin and with lengths
+/// in units of the reach. Singular values below the threshold times the largest count as 0.
 std::vector<std::size_t> passive_ranks(const Assembly& assembly, const Nominal& pose, double threshold);
 
 /// [6 x 6] The matrix that converts twists from the base frame, with lengths in m, to the origin and axes of `frame`

@@ -54,7 +54,7 @@ Outcome outcome_of(const Assembly& assembly, const Nominal& pose, const Solution
 /// The outcome of one column of a first-order result.
 Outcome outcome_of(const Assembly& assembly, const Nominal& pose, const Balance& balance, Eigen::Index column);
 
-/// Names, dimensions and meanings of the responses, in the order of response_values(). If the assembly can deform,
+/// Names, dimensions and meanings of the responses, in the order of response_values(). If `deforms` is true,
 /// `gap`, `angular_deformation` and `linear_deformation` come first. If Report::motions is true, the displacements of
 /// the platform, of the tool and of the other bodies follow. If limbs have stiffness, `strain_energy`, the forces and
 /// moments of limbs, the forces of drives, and the reactions follow.

@@ -37,7 +37,7 @@ struct SolverStart {
 /// tests compare the kernels with it.
 class Solver {
  public:
-  /// The assembly must outlive this object. ranks: [limbs] rank of each limb's passive columns.
+  /// The assembly must outlive this object. ranks: [limbs] rank of the columns of each limb's passive joints.
   Solver(const Assembly& assembly, std::vector<std::size_t> ranks, const SolverOptions& options);
 
   /// Sets the nominal pose, which must outlive the solves.

@@ -12,9 +12,9 @@
 namespace poesy::chain {
 namespace {
 
-/// A step shorter than this counts as rest. The length of a step is the largest distance by which the change of a
-/// single joint moves the platform's points, divided by the reach. Without a metric, it is the largest norm of a
-/// joint's twist, in rad and m.
+/// A step shorter than this counts as rest. The length of a step is the largest root mean square displacement of the
+/// metric's points by the change of a single joint, divided by the reach. Without a metric, the length is the largest
+/// norm of a joint's twist (rad, m).
 constexpr double kRest = 1e-9;
 
 /// The sum of |delta_mu|_W^2 over all pairs of limbs.

@@ -15,8 +15,8 @@
 namespace poesy::chain {
 
 /// A bound on the first-order change of ln det(J^T W J) that the errors of a machine cause. If the change is below this
-/// negative number, the loops of the machine may open. They open at a change of about -1. J: Jacobian of the passive
-/// joints; W: metric; see Assembly::nearing().
+/// negative number, the loops of the machine may open. The loops open at a change of about -1. J: Jacobian of the
+/// passive joints; W: metric; see Assembly::nearing().
 inline constexpr double kNearing = -0.5;
 
 /// Decides whether the loops of a machine with errors can be closed at all. If limbs over-constrain the platform, the
@@ -73,8 +73,8 @@ class Assembly {
   const ParallelChain* chain_;
   std::vector<double> nominal_;  ///< [all joints] nominal displacements
   lie::Matrix6<double> W_ = lie::Matrix6<double>::Zero();
-  double reach_ = 1.0;        ///< reach of the metric (m). Without a metric it is 1, so 1 m weighs as much as 1 rad.
-  bool is_asked_ = false;     ///< true if is_regular() has been called since prepare()
+  double reach_ = 1.0;        ///< reach of the metric (m); 1 without a metric, so that 1 m weighs as much as 1 rad
+  bool is_asked_ = false;     ///< true if is_regular() has been called for the present data of prepare()
   bool is_singular_ = false;  ///< true if the perfect mechanism is singular; valid if is_asked_
   FirstOrder first_order_;
   NormalEquations equations_;

@@ -14,8 +14,8 @@ namespace poesy::chain {
 enum class KernelPass {
   published,  ///< Gauss-Newton with the published stopping rule
   direct,     ///< Newton's method, which stops at the first unsafe step
-  follow,     ///< Gauss-Newton, then Newton once its steps are small and safe
-  rescue      ///< a Newton step if its pivots are positive, else half a Gauss-Newton step
+  follow,     ///< Gauss-Newton, replaced near the root by safe Newton steps
+  rescue      ///< a Newton step if the pivots of its matrix are positive, else half a Gauss-Newton step
 };
 
 /// The shape of a chain of three limbs with equal numbers of passive joints, whose platform poses are compared in all
@@ -69,22 +69,22 @@ struct AnyShape {
 /// rule is that of DeformationSolver.
 ///
 /// Method `newton`: the step is x = M^-1 f. M is the negative derivative of f, exact to fourth order in the residual's
-/// angle. In addition to N it contains the rotation of the columns of J (the bracket of an earlier column with a later
+/// angle. In addition to N, M contains the rotation of the columns of J (the bracket of an earlier column with a later
 /// one) and the curvature of the logarithm (dlog = 1 - ad/2 + ad^2/12). A Newton step is safe if the pivots of M are at
 /// least 1e-5 of the diagonal of N, and 2 N - M is positive definite too. Then Gauss-Newton contracts to the same root
 /// to which the Newton step leads. A sample goes through up to three passes of KernelPass:
-///     direct   Newton steps from the starting point. The pass gives up a sample at a step that is not safe, or that is
-///              larger than the options allow;
+///     direct   up to 12 Newton steps from the starting point. The pass gives up a sample at a step that is not safe,
+///              or that is larger than the options allow;
 ///     follow   Gauss-Newton from nominal displacements, up to 8 max_iterations. A Newton step replaces the
 ///              Gauss-Newton step if it is safe and below 1e-3 and the Gauss-Newton step is below 2e-3. This pass finds
 ///              the root to which Gauss-Newton converges, if it converges. The pass gives up a sample whose
 ///              displacements return to those of an earlier iteration;
-///     rescue   from nominal displacements, a Newton step if the pivots of M are positive, else half a Gauss-Newton
-///              step, up to max_iterations. This pass finds a root at which M is positive definite, if Gauss-Newton
-///              does not converge. Roots more than 0.5 (rad, m) away from nominal displacements are other assembly
-///              modes of the chain and are refused.
-/// Newton converges quadratically. So a safe step of less than sqrt(tolerance / 10) is the last one, and the residual
-/// is updated to first order instead of being evaluated again.
+///     rescue   from nominal displacements, a Newton step if the pivots of M are positive and the step is not larger
+///              than the options allow, else half a Gauss-Newton step; up to max_iterations. This pass finds a root at
+///              which M is positive definite, if Gauss-Newton does not converge. Roots more than 0.5 (rad, m) away from
+///              nominal displacements are other assembly modes of the chain and are refused.
+/// Newton converges quadratically. So a safe step of less than KernelOptions::last_step, about sqrt(tolerance / 10), is
+/// the last one, and the residual is updated to first order instead of being evaluated again.
 template <class T, class Shape>
 class BlockKernel {
  public:
@@ -234,7 +234,7 @@ class BlockKernel {
   /// First order: coordinates y (KernelMap).
   double* memory_;
   double* smallest_;  ///< pass `published`: smallest change of the residual in all rounds so far
-  double* flat_;  ///< pass `published`: rounds since that smallest change; pass `direct`: -1 if a fit gave the start
+  double* flat_;      ///< pass `published`: rounds since the smallest change; pass `direct`: -1 if a fit gave the start
   std::uint32_t* index_;  ///< index of each sample in the block
   std::uint32_t* left_;   ///< samples to solve; after a pass, the samples that it did not solve
 

@@ -118,7 +118,7 @@ void BlockKernel<T, Shape>::newton_matrix() {
   }
 }
 
-/// Factorises as L D L^T the symmetric matrix with the entries entry(a, b), b <= a. Stores L D below the diagonal of
+/// Factorises the symmetric matrix with the entries entry(a, b), b <= a, as L D L^T. Stores L D below the diagonal of
 /// work_, L^T above it and 1 / D behind the matrix. Returns the smallest difference pivot - ratio x diagonal entry, or
 /// 1 if all these differences are larger than 1.
 template <class T, class Shape>

@@ -29,7 +29,7 @@ inline auto dot(const Screw& a, const Screw& b) {
   return sum;
 }
 
-/// Subtracts a multiple of a screw: rest -= share a.
+/// Subtracts a multiple of a screw: rest -= share x a.
 template <class T, class Screw>
 inline void subtract(T share, const Screw& a, Screw& rest) {
   for (int n = 0; n < 3; ++n) {

@@ -83,8 +83,8 @@ void BlockKernel<T, Shape>::map(const KernelMap& map) {
   }
 }
 
-/// Adds the first-order effects of varied errors v to v + errors - 1 to kMapRows coordinates of all samples. It reads
-/// few rows of sample values at a time, so that the hardware prefetcher can follow them.
+/// Adds the first-order effects of varied errors v to v + errors - 1 to kMapRows coordinates of all samples. The
+/// function reads few rows of sample values at a time, so that the hardware prefetcher can follow them.
 template <class T, class Shape>
 template <std::size_t errors>
 void BlockKernel<T, Shape>::add_mapped(const KernelMap& map, std::size_t first, std::size_t v) {

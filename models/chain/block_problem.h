@@ -33,8 +33,8 @@ struct KernelPiece {
   int varied_row[6];
 };
 
-/// The motion from one passive joint to the next, before the first joint of a limb, or behind its last joint. It is a
-/// product of consecutive pieces.
+/// The motion from one passive joint to the next, before the first joint of a limb, or behind its last joint. The
+/// motion is a product of consecutive pieces.
 struct KernelSegment {
   std::size_t first_piece;  ///< index of the segment's first piece among all pieces
   std::size_t pieces;       ///< number of pieces
@@ -77,8 +77,8 @@ struct KernelSamples {
   std::size_t count;     ///< number of samples
 };
 
-/// Starting points of solves in which one error varies and its value lies within half_width of center. They are a
-/// Chebyshev series in (value - center) / half_width for each passive joint's displacement.
+/// Starting points of solves in which one error varies and its value lies within half_width of center. The starting
+/// points are a Chebyshev series in (value - center) / half_width for each passive joint's displacement.
 struct KernelFit {
   double center;               ///< middle of the error's range, SI
   double half_width;           ///< half the width of the error's range, SI
@@ -107,8 +107,8 @@ struct KernelMap {
   const double* delta_mu;  ///< [6 pairs x rows] change of delta_mu per unit of each component of y
 };
 
-/// The motion of the platform in the base frame (m, rad). Limb i alone puts the platform at the pose g_i, so it moves
-/// the platform by xi_i = log(g_i g_nominal^-1). The motion of the platform is the mean xi of all xi_i; its
+/// The motion of the platform in the base frame (m, rad). Limb i alone puts the platform at the pose g_i, so this limb
+/// moves the platform by xi_i = log(g_i g_nominal^-1). The motion of the platform is the mean xi of all xi_i; its
 /// displacement is D = exp(xi).
 struct KernelPlatform {
   double nominal[12];  ///< pose base_T_platform without errors: rotation matrix row by row, then translation (m)
@@ -145,7 +145,7 @@ struct KernelOptions {
 /// because numbers behind the last sample are overwritten.
 struct KernelOutcome {
   double* delta_mu;           ///< [6 pairs x stride] residuals (rad, m)
-  double* responses;          ///< [3 x stride] angular (rad), linear (m) and largest deformation
+  double* responses;          ///< [3 x stride] angular (rad), linear (m) and largest deformation (norm over rad and m)
   double* displacements;      ///< [joints x stride] displacements of the passive joints (rad, m); null if not wanted
   SolveStatus* status;        ///< [stride] status of each sample
   std::uint32_t* iterations;  ///< [stride] iterations of each sample

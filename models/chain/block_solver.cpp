@@ -312,7 +312,7 @@ void BlockSolver::solve(std::span<const double> values, std::size_t count) {
   move_platform(chain, samples, nullptr, make_room(chain, samples));
 }
 
-/// Computes nearing_ and nearing_constant_, which show how close errors bring the loops to opening. They are also
+/// Computes nearing_ and nearing_constant_, which show how close errors bring the loops to opening. Both are also
 /// needed for samples that the kernel solved: if 1 rad weighs as much as 1 m, a solve may find a root although the
 /// loops cannot be closed.
 void BlockSolver::find_nearing(std::span<const FrameError<double>> errors, std::span<const FrameEntry> varied) {

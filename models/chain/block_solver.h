@@ -20,10 +20,11 @@ enum class Fidelity : std::size_t {
   first_order  ///< linear in the errors, in closed form; see FirstOrder
 };
 
-/// Solves blocks of samples with the fastest kernel that this machine supports. BlockKernel states the methods and
-/// their guarantees; the method gauss_newton is Scheme I as in DeformationSolver. Samples that the kernel does not
-/// solve, and samples with errors for which loops may open, are examined by Assembly, which may give them the status
-/// not_assembled. An object has scratch memory, so each thread needs its own object.
+/// Solves blocks of samples with the fastest kernel that this computer supports. BlockKernel states the methods and
+/// their guarantees; the method gauss_newton is Scheme I as in DeformationSolver. With Fidelity::exact, Assembly
+/// examines the samples that the kernel does not solve and those with errors for which loops may open. Their status
+/// becomes not_assembled if they cannot be assembled. An object has scratch memory, so each thread needs its own
+/// object.
 class BlockSolver {
  public:
   /// The chain must outlive the solver.
@@ -45,7 +46,8 @@ class BlockSolver {
   /// [count] A component of the residuals (rad, m) of the last block. row: 6 n + k for component k of the n-th pair of
   /// limbs.
   std::span<const double> delta_mu(std::size_t row) const { return row_of(delta_mu_, row); }
-  /// [count] A response of the last block. row: 0 angular (rad), 1 linear (m), 2 largest deformation.
+  /// [count] A response of the last block. row: 0 angular (rad), 1 linear (m), 2 largest deformation (norm over rad and
+  /// m).
   std::span<const double> response(std::size_t row) const { return row_of(responses_, row); }
   /// [count] A displacement of the platform in the last block. row: index in the list of platform_rows().
   std::span<const double> platform(std::size_t row) const { return row_of(platform_responses_, row); }

@@ -34,7 +34,7 @@ class CalibratedEvaluator final : public Evaluator {
   }
 
  private:
-  /// Corrects the platform's responses of one sample. They are in the order of platform_responses().
+  /// Corrects the platform's responses of one sample. The responses are in the order of platform_responses().
   void correct(const lie::Matrix6<double>& left, const PlatformPoints& points, std::size_t sample,
                const OutcomeBlock& outcomes) const {
     const auto count = static_cast<Eigen::Index>(outcomes.status.size());

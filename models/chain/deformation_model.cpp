@@ -63,8 +63,8 @@ class DeformationEvaluator final : public Evaluator {
   }
 
  private:
-  /// The largest number of poses whose Nominal is kept for later samples, because inverse kinematics may be iterative
-  /// and so take long.
+  /// The Nominal of each pose is kept for later samples, because inverse kinematics may be iterative and so take long.
+  /// If Nominals of more poses than this are kept, all are discarded.
   static constexpr std::size_t kMostPoses = 1024;
 
   const Nominal& nominal_at(std::span<const double> pose) {
@@ -115,8 +115,8 @@ class DeformationEvaluator final : public Evaluator {
   }
 
   /// Prepares the solver. Returns the values [varied components x samples] of the varied components. These are the
-  /// values of the samples' errors, unless several errors add to a component, or an error is scaled or adds to several
-  /// components.
+  /// values of the samples' errors, unless a component has a constant part or a sum of several errors, or an error is
+  /// scaled or adds to several components.
   std::span<const double> prepare(const Nominal& nominal, const SampleBlock& samples) {
     set_constant(nominal, samples);
     const auto values = find_varied(nominal, samples) ? samples.values : combined(samples);

@@ -20,8 +20,8 @@ double largest(std::span<const double> values) {
   return most;
 }
 
-/// All fixed frames with errors, limb by limb. displacements: nominal ones of all joints (rad, m). errors: one for each
-/// error of the model, SI.
+/// All fixed frames with errors, limb by limb. displacements: nominal ones of all joints (rad, m). errors: the value of
+/// each error of the model, SI.
 std::vector<lie::Transform<double>> frames_with(const DeformationModel& model, std::span<const double> displacements,
                                                 std::span<const double> errors) {
   std::vector<FrameError<double>> of_frames(model.chain.frames(), FrameError<double>::Zero());

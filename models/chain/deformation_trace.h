@@ -7,12 +7,12 @@
 namespace poesy::chain {
 
 /// The trace of a solve by DeformationSolver: the published Gauss-Newton method from nominal displacements, whatever
-/// method the options name. pose: reachable, SI. errors: one for each error of the model, SI.
+/// method the options name. pose: reachable, SI. errors: the value of each error of the model, SI.
 SolveTrace deformation_trace(const DeformationModel& model, std::span<const double> pose,
                              std::span<const double> errors, const SolverOptions& options);
 
-/// The trace of a first-order evaluation in closed form, which does not iterate. pose: reachable, SI. errors: one for
-/// each error of the model, SI.
+/// The trace of a first-order evaluation in closed form, which does not iterate. pose: reachable, SI. errors: the value
+/// of each error of the model, SI.
 SolveTrace first_order_trace(const DeformationModel& model, std::span<const double> pose,
                              std::span<const double> errors);
 

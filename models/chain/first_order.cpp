@@ -29,8 +29,8 @@ bool FirstOrder::prepare(std::span<const double> displacements, const lie::Matri
       if (!limb.joints[j].actuated) columns_[column++] = spatial_column(limb.joints[j], g);
       move_joint(limb.joints[j], displacements[joint], g);
     }
-    // In the last frame the inverse of the error multiplies from the right, so before_error() of this frame precedes
-    // it.
+    // In the last frame the inverse of the error multiplies from the right, so before_error() of this frame comes
+    // before the inverse.
     from_error_[frame++] = -lie::adjoint(g * limb.before_error(limb.joints.size()));
   }
   W_ = W == nullptr ? lie::Matrix6<double>(lie::Matrix6<double>::Identity()) : *W;

@@ -95,8 +95,8 @@ struct FrameEntry {
   bool operator==(const FrameEntry&) const = default;
 };
 
-/// The motion Delta g of a frame's error (Du et al. 2022, Eq. 26): rotation exp(omega) and translation v. It is not the
-/// exponential of a screw.
+/// The motion Delta g of a frame's error (Du et al. 2022, Eq. 26): rotation exp(omega) and translation v. Delta g is
+/// not the exponential of a screw.
 template <class T>
 lie::Transform<T> error_transform(const FrameError<T>& error) {
   const lie::Vector3<T> omega = error.template head<3>();

@@ -10,10 +10,10 @@
 namespace poesy::chain {
 
 /// Displacements [all joints] (rad, m) near the given ones that solve J^T delta_mu = 0 with unchanged drives and
-/// without errors. If the solver does not converge, the displacements before the failed solve.
+/// without errors. If a solve does not converge, returns the displacements before this solve.
 std::vector<double> settled(const ParallelChain& chain, std::vector<double> displacements);
 
-/// The mean pose base_T_platform g of the limbs' platform poses g_i. It is defined by sum log(g_i g^-1) = 0.
+/// The mean pose base_T_platform g of the limbs' platform poses g_i. The mean pose is defined by sum log(g_i g^-1) = 0.
 lie::Transform<double> mean_platform(const ParallelChain& chain, std::span<const double> displacements);
 
 /// [limbs] The motions log(g_i g^-1) of all limbs from mean_platform() g.

@@ -19,8 +19,8 @@ Eigen::MatrixXd incidence_of(const ParallelChain& chain) {
   return incidence;
 }
 
-/// For L limbs, the matrix N [L - 1, L] with N^T N = incidence^T incidence. It removes the motion that all limbs have
-/// in common.
+/// For L limbs, the matrix N [L - 1, L] with N^T N = incidence^T incidence. N removes the motion that all limbs have in
+/// common.
 Eigen::MatrixXd independent_rows(const Eigen::MatrixXd& incidence) {
   const auto [values, vectors] = linalg::eigen_decomposition(incidence.transpose() * incidence);
   const Eigen::Index limbs = incidence.cols();

@@ -7,18 +7,18 @@
 
 namespace poesy::chain {
 
-/// The first-order effect of each error on the platform at a reachable pose, and the part of it that remains after the
-/// best correction of the drives. If no joint moves, a unit of an error of limb i moves the limb's own platform by the
-/// twist xi. After the reaction of the passive joints (J^T W delta_mu = 0, see FirstOrder) it moves the platform of the
-/// mechanism by B_i xi, the mean of the motions of all limbs' platforms. Let V_i be the columns of the limb's passive
-/// joints, and A_i those of its drives. Then xi splits into
+/// The first-order effect of each error on the platform at a reachable pose, and the part of this effect that remains
+/// after the best correction of the drives. If no joint moves, a unit of an error of limb i moves the limb's own
+/// platform by the twist xi. After the reaction of the passive joints (J^T W delta_mu = 0, see FirstOrder) the error
+/// moves the platform of the mechanism by B_i xi, the mean of the motions of all limbs' platforms. Let V_i be the
+/// columns of the limb's passive joints, and A_i those of its drives. Then xi splits into
 ///
 ///     xi = V_i u + A_i a + n, with u and a such that |n|_i is as small as possible
 ///     drive = |B_i A_i a|, constraint = |B_i n|, effect = |B_i xi|
 ///     residual = min over dq of |B_i xi + sum over all limbs of B_k A_k dq_k|
 ///
 /// dq has an entry for each drive, and A_i has a column for each drive. A drive that moves joints of several limbs
-/// (Joint::drive) has one entry of dq for all of them, so it may be unable to correct an error of one limb.
+/// (Joint::drive) has one entry of dq for all of them, so this drive may be unable to correct an error of one limb.
 ///
 /// Passive joints compensate their own motions: B_i V_i = 0. |x| is the root mean square displacement of the model's
 /// platform->points by the twist x. |n|_i is the norm for the limb's end: |n|_i^2 = |v + omega x c|^2 + rho^2 |omega|^2

@@ -25,9 +25,9 @@ struct LimbFrames {
 /// Adds the joints and frames of one limb to the sketch. sketch.frames already contains those of the preceding limbs.
 void place_limb(Sketch& sketch, const LimbFrames& frames, bool errors_at_joints);
 
-/// The motions [omega; v] of the limbs' ends by an error; one motion if all are equal up to rounding. moves: the
-/// largest motion of an end that the error causes if no joint moves. Differences count as rounding if they are small
-/// compared with it.
+/// The motions [omega; v] of the limbs' ends by an error; one motion if all are equal up to rounding. moves: the norm
+/// of the largest motion of an end that the error causes if no joint moves. Differences count as rounding if they are
+/// small compared with this norm.
 std::vector<SketchTwist> sketched_motions(std::vector<lie::Screw<double>> motions, double moves);
 
 /// The sketch of an error by its first term, without its motions. place_limb() must have added the limb of that term.

@@ -147,8 +147,8 @@ class BalancedModel final : public TrackedModel {
 
   assembly::AssemblyModel model_;
   chain::Fidelity fidelity_;
-  /// True if there is stiffness and there are more drives than freedoms. Then drives put forces on limbs, and
-  /// corrections by the drives change these forces.
+  /// True if there is stiffness and there are more drives than freedoms (without idle ones). Then drives put forces on
+  /// limbs, and corrections by the drives change these forces.
   bool has_forces_of_drives_;
 };
 

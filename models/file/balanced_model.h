@@ -15,8 +15,8 @@ namespace poesy::file {
 assembly::AssemblyModel assembly_model(const Mechanism& mechanism, std::shared_ptr<const PoseTracker> tracker,
                                        const Mobility& home, assembly::Metric metric);
 
-/// The model in which limbs and bodies are in equilibrium according to a metric. Throws InputError if rigid limbs
-/// over-constrain each other and the metric is "stiffness".
+/// The model in which limbs and bodies are in equilibrium; `metric` determines the compliances of the limbs. Throws
+/// InputError if rigid limbs over-constrain each other and the metric is "stiffness".
 std::unique_ptr<TrackedModel> balanced_model(const MechanismFile& file, Checked found, assembly::Metric metric,
                                              chain::Fidelity fidelity);
 

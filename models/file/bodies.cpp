@@ -22,7 +22,8 @@ std::string copies_text(const Copies& copies) {
   return std::to_string(copies.count) + " about " + std::string(kAxes[copies.about]);
 }
 
-/// The number of the body's copy to which copy number `copy` of a limb refers.
+/// The copy of the body to which copy `copy` of a limb refers (both counted from 0). Throws unless limb and body have
+/// the same copies.
 std::size_t same_copy(const LimbLines& limb, const BodyLines& body, const Reference& reference, std::size_t copy) {
   if (limb.copies == body.copies) return copy;
   const std::string one = "name one of them, \"" + name_of(body, 0) + "\"";

@@ -39,11 +39,10 @@ class Chart {
 /// [mechanism.coordinates] The coordinates of a pose, SI.
 std::vector<double> coordinates_of(const Mechanism& mechanism, const PlatformPose& pose);
 
-/// The charts that any geometry offers. The chart "tip" exists if the mechanism has a tool and a length among its
-/// coordinates. Its coordinates contain the position of the tool in place of the position of the platform's origin P.
-/// The chart "actuators" exists if the mechanism has as many drives as coordinates. Its coordinates are the
-/// displacements of the drives from home. A chart is omitted if one of its names belongs to another coordinate of the
-/// mechanism.
+/// The charts of a mechanism. The chart "tip" exists if the mechanism has a tool and a length among its coordinates.
+/// Its coordinates contain the position of the tool in place of the position of the platform's origin P. The chart
+/// "actuators" exists if the mechanism has as many drives as coordinates. Its coordinates are the displacements of the
+/// drives from home. A chart is omitted if one of its names belongs to another coordinate of the mechanism.
 std::vector<Chart> charts_of(const Mechanism& mechanism);
 
 }  // namespace poesy::file

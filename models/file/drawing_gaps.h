@@ -6,7 +6,7 @@
 #include "models/file/mechanism.h"
 
 /// Directions of errors that the tolerances of a drawing do not limit, and zones that limit nothing, as clauses for
-/// people.
+/// messages.
 namespace poesy::file {
 
 /// Finds, for each part, directions of its error twist that matter but that no error of the part covers. A direction
@@ -17,13 +17,13 @@ namespace poesy::file {
 /// part's frame. Empty without features.
 std::vector<std::string> uncovered_directions(const Mechanism& mechanism);
 
-/// Clauses about zones that say less than they seem to: a location or an orientation without datums, and an orientation
-/// zone that is not narrower than what the feature's location zone allows. There are also clauses about a distance
-/// whose nominal size is less than half or more than twice the length of its part in that direction.
+/// Clauses about doubtful zones: a location or an orientation without datums, and an orientation zone so wide that it
+/// has no effect beside the feature's location zone (drawing::widest_orientation()). There are also clauses about a
+/// distance whose nominal size is less than half or more than twice the length of its part in that direction.
 std::vector<std::string> doubtful_zones(const Mechanism& mechanism);
 
-/// A clause about a clearance in an over-constrained mechanism, in which it adds to the mismatch between limbs although
-/// the play of a real joint takes mismatch up. At most one.
+/// A clause about the first clearance, if the mechanism is over-constrained; else no clause. The model lets a clearance
+/// add to the mismatch between limbs, although the play of a real joint takes mismatch up.
 std::vector<std::string> doubtful_clearances(const Mechanism& mechanism);
 
 }  // namespace poesy::file

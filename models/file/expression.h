@@ -19,8 +19,9 @@
 /// a parameter. "5 mm^2" is five square millimetres, "(5 mm)^2" is 25. An exponent is a whole number; -a^2 is -(a^2).
 ///
 /// poesy has its own parser because muparser (Debian) computes only with doubles. A second evaluation with other units
-/// of length and angle would show the dimension of a value, but not of zero ("offset + 1 deg" with offset = 0 mm).
-/// Operators on encoded dimensions would take as much code and could not name the place of a mistake.
+/// of length and angle would show the dimension of a value, but not of zero ("offset + 1 deg" with offset = 0 mm). If
+/// the doubles encoded dimensions, new operators for them would take as much code as a parser and could not name the
+/// place of a mistake.
 namespace poesy::file {
 
 /// A quantity as written in a mechanism file. It has no value yet, because a study may change the geometry.
@@ -35,7 +36,7 @@ struct Expression {
 struct Value {
   double si = 0.0;     ///< value in m, rad, kg, s and their powers
   Powers powers = {};  ///< dimension of the value
-  bool any = false;    ///< true if it is the bare number 0, which fits every dimension
+  bool any = false;    ///< true for the number 0 without a unit and products with it, which fit every dimension
 
   /// Returns true if the two values may be added, because their dimensions agree.
   bool like(const Value& other) const;

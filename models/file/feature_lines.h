@@ -21,8 +21,7 @@ std::string_view name(FeatureWord kind);  ///< "axis", "plane", "point" or "dist
 enum class PartSide { before, after };
 std::string_view name(PartSide side);  ///< "before" or "after".
 
-/// The shape of the zones of a feature: the usual one, which is around an axis or a point, or the space between two
-/// planes.
+/// The shape of the zones of a feature: around its axis or point (`usual`), or between two planes (`planes`).
 enum class ZoneShape { usual, planes };
 std::string_view name(ZoneShape shape);  ///< "usual" or "planes".
 
@@ -86,7 +85,7 @@ FeatureKind kind_of(const FeatureLines& lines);
 /// Reads `features = [ ... ]`.
 std::vector<FeatureLines> read_features(const StudyValue& value);
 
-/// The tables of features and clearances with all keys, for the reference.
+/// The tables of features and clearances with all keys, for key_reference().
 StudyTables feature_tables();
 
 }  // namespace poesy::file

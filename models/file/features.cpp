@@ -171,8 +171,8 @@ class FeatureBuilder {
     return {joint + 1, is_last ? mechanism_.bodies[limb.to].home : limb.joints[joint].at_home, !is_last};
   }
 
-  /// The other end of a part at this joint, at home: the point of the neighbouring joint, or the origin of the body
-  /// after the last joint. None for a part of the base, and if one of the two joints slides, because the
+  /// The other end, at home, of the part on this side of a joint: the point of the neighbouring joint, or the origin of
+  /// the body after the last joint. None for a part of the base, and if one of the two joints slides, because the
   /// point of a sliding joint does not show where its part ends.
   std::optional<Vector3> other_end(PartSide side, const Limb& limb, std::size_t joint) const {
     const auto slides = [&](std::size_t j) {
@@ -296,8 +296,8 @@ class FeatureBuilder {
     return {most, mean * mean + sigma * sigma};
   }
 
-  /// The feature for the axis of a joint with clearance. Sizes of parts are normally distributed, and half a zone is
-  /// three standard deviations.
+  /// The feature for the axis of a joint with clearance. The diameters of a fit, or the clearance between `least` and
+  /// `most`, are normally distributed; half the range between their limits is three standard deviations.
   Feature loose(const ClearanceLines& lines) const {
     Feature feature = described(lines.axis);
     feature.clearance = lines.fit.empty() ? by_ends(lines) : by_fit(lines);

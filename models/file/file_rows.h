@@ -85,7 +85,7 @@ std::vector<StudyValue> tables(const StudyValue& value);
 /// Reads `copies = { count = 3, about = "z" }`.
 Copies read_copies(const StudyValue& value);
 
-/// The table of the keys of `copies`, for the reference.
+/// The table of the keys of `copies`, for key_reference().
 StudyTable copies_table();
 
 }  // namespace poesy::file

@@ -19,7 +19,7 @@ struct GeneralLines {
 /// Reads the table `[drawing]`.
 GeneralLines read_drawing(const StudyValue& value);
 
-/// The keys of `[drawing]`, for the reference.
+/// The keys of `[drawing]`, for key_reference().
 StudyTable drawing_keys_table();
 
 /// The size (m) of a zone that is written "general". feature: the feature that has the zone. Throws InputError if the

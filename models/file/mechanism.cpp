@@ -137,8 +137,8 @@ class Builder {
                      suggestion(reference.name, known));
   }
 
-  /// The point of a joint (m): the value of `at`, or for joints P, H and C of `from`. depth: number of references
-  /// followed so far.
+  /// The point of a joint (m): the value of the key `at`, or for joints P, H and C without `at` that of `from`. depth:
+  /// number of references followed so far.
   Vector3 joint_point(const LimbLines& limb, const JointLines& joint, std::size_t depth = 0) const {
     if (depth > limb.joints.size()) {
       throw InputError(joint.place, joint.key + " '" + joint.name + "' takes its point from itself",

@@ -57,7 +57,8 @@ struct Limb {
   std::vector<Transform> home;  ///< frames at home: body to first joint, joint to joint, last joint to body
   std::size_t from = kBase;     ///< index of the first body
   std::size_t to = kPlatform;   ///< index of the last body
-  /// Label: the number of the limb, counted from 1, or its name and the number of the copy.
+  /// Label: the number of the limb, counted from 1; or the limb's name, with the number of the copy if there are
+  /// several.
   std::string label = {};
   std::vector<assembly::Bearing> bearings = {};      ///< bearings with compliance
   std::vector<assembly::Link> links = {};            ///< links with compliance
@@ -136,8 +137,8 @@ struct Mechanism {
   std::vector<EachLimb> each = {};            ///< errors with limb = "each"
   ErrorsAbout about = ErrorsAbout::joint;     ///< points about which angular errors of frames rotate
   /// True if the solvers rotate angular errors of a limb's first and last frame about the joint next to the frame
-  /// (chain::Limb::errors_at_joints). False if they rotate them about the origin of base or platform. It is false if
-  /// there are features; `terms` then account for the other centre if `about` is ErrorsAbout::joint.
+  /// (chain::Limb::errors_at_joints). False if they rotate them about the origin of base or platform, as always if
+  /// there are features; if `about` is then ErrorsAbout::joint, `terms` contain the displacement of this origin.
   bool errors_at_joints = true;
   std::vector<Feature> features = {};  ///< features of all limbs
   /// [features] part_T_feature at home: the middle (m) and the axes of each feature in the frame of its part.
@@ -147,7 +148,7 @@ struct Mechanism {
   double reach;
   Precision precision = {};  ///< precision of the numbers
   assembly::Load load = {};  ///< load, used only if there is stiffness
-  /// Points of the platform whose displacements are reported.
+  /// Points of the platform, in its frame (m), whose displacements are reported.
   std::vector<NamedPlatformPoint> named = {};
 
   /// The number of joints that have a displacement, over all limbs.

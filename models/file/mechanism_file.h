@@ -40,7 +40,7 @@ struct JointLines {
   std::optional<Reference> at_point;        ///< point of the joint, as a named point
   std::optional<Reference> from;            ///< point at which the axis begins
   std::optional<Reference> to;              ///< point at which the axis ends
-  std::optional<Triple> axis;               ///< direction of the axis, if `from` and `to` are absent
+  std::optional<Triple> axis;               ///< direction of the axis; default: from `from` to `to`
   std::optional<Triple> axis2;              ///< second axis of a joint U
   std::optional<Triple> x;                  ///< x axis of the joint's first frame
   std::optional<Expression> pitch;          ///< pitch of a joint H, length per turn
@@ -50,7 +50,7 @@ struct JointLines {
   bool reaction = false;                    ///< true if the joint's reaction is a response
 };
 
-/// A limb as written, with the number of its copies.
+/// A limb as written, with its copies.
 struct LimbLines {
   std::string name;                           ///< name of the limb and its copies; empty if there is none
   std::string key;                            ///< key in the file, for messages: "limb[0]"
@@ -59,7 +59,7 @@ struct LimbLines {
   std::optional<Reference> to;                ///< body at which the limb ends; default: the platform
   std::vector<JointLines> joints;             ///< joints, in order from the first body to the last
   std::vector<NamedPoint> points;             ///< named points to which only this limb may refer
-  Copies copies;                              ///< number of copies
+  Copies copies;                              ///< number of copies, and the axis of their rotation
   std::vector<LinkLines> links;               ///< links with compliance
   std::vector<FeatureLines> features;         ///< features of the limb's parts, with tolerances
   std::vector<ClearanceLines> clearances;     ///< clearances of the limb's joints
@@ -120,7 +120,7 @@ struct SlotLines {
 
 /// A component of a frame's error, and the change of the component by an error of the file.
 struct ComponentLines {
-  std::size_t component;  ///< index in [epsilon; delta]
+  std::size_t component;  ///< index in [epsilon; delta]: 0-2 angular, 3-5 linear
   Expression scale;       ///< change of the component per unit of the error
 };
 
@@ -181,11 +181,11 @@ struct MechanismFile {
   bool all_frames() const { return all || (!frames && errors.empty() && !has_features()); }
 };
 
-/// The tables of a mechanism file with all keys, for the reference.
+/// The tables of a mechanism file with all keys, for key_reference().
 const StudyTables& mechanism_file_tables();
 
 /// Reads the responses that a file defines itself ([[response]]), for a model with this description; none if it defines
-/// none. Throws InputError.
+/// none. Throws InputError for a mistake in them.
 std::vector<OwnResponse> read_own_responses(const std::string& text, const std::string& path,
                                             const ModelDescription& model);
 

@@ -47,7 +47,7 @@ PoseEquations equations_at(const Mechanism& unit, const Tracked& tracked) {
   made.state = tracked.state;
   const LoopEquations loops = loop_equations(unit, made.state);
   std::vector<std::size_t> free;
-  const std::size_t moving = unit.moving();  // number of moving joints; the platform's pose follows
+  const std::size_t moving = unit.moving();  // in a State, the pose of the platform follows these joints
   for (std::size_t k = 0; k < static_cast<std::size_t>(made.state.size()); ++k) {
     const bool given = k >= moving && std::ranges::find(unit.coordinates, k - moving, &Coordinate::component) !=
                                           unit.coordinates.end();

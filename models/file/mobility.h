@@ -59,7 +59,7 @@ Mobility home_mobility(const Mechanism& mechanism);
 struct PoseMobility {
   std::vector<double> pose;  ///< [coordinates] pose, SI
   Tracked tracked;           ///< result of tracking the path from home to the pose
-  Mobility mobility = {};    ///< valid if the pose is reached
+  Mobility mobility = {};    ///< mobility at the pose; valid only if the pose is reached
   double turned = 0.0;       ///< angle of the parasitic rotation (rad); 0 if the pose is not reached
   double moved = 0.0;        ///< length of the parasitic displacement of P (m); 0 if the pose is not reached
 
@@ -75,9 +75,9 @@ std::vector<PoseMobility> workspace_mobility(const Mechanism& mechanism, std::si
 /// the joint, freedom or coordinate at fault. More drives than freedoms are over-constraints, not mistakes.
 void check_mobility(const Mechanism& mechanism, const Mobility& home);
 
-/// Throws InputError if none of these poses is reached from home, if the mechanism has another number of freedoms at
-/// one of them than at home, so that home is singular, or if the drives do not hold all bodies at one of them. poses:
-/// from workspace_mobility().
+/// Throws InputError if none of these poses is reached from home, if the mechanism has another number of freedoms at a
+/// reached pose than at home, so that home is singular, or if the drives do not hold all bodies at a reached pose.
+/// poses: from workspace_mobility(); if empty, nothing is checked.
 void check_mobility(const Mechanism& mechanism, const Mobility& home, std::span<const PoseMobility> poses);
 
 }  // namespace poesy::file

@@ -178,7 +178,8 @@ CatalogEntry entry_of(MechanismFile file, const std::string& path, const std::st
   return with_own(*other, own, other->description);
 }
 
-/// Adds the function that changes loads (CatalogEntry::with_load) to the catalog entry. The new entry has all metrics.
+/// Adds the function that changes loads (CatalogEntry::with_load) to the catalog entry. The entry that this function
+/// returns has all metrics of the file.
 CatalogEntry with_loads(CatalogEntry entry, const MechanismFile& file, const std::string& path,
                         const std::string& text) {
   entry.with_load = [file, path, text](const StudyValue& value) {

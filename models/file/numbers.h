@@ -55,7 +55,7 @@ lie::Matrix3<double> frame_of(const Vector3& x, const Vector3& z);
 /// The part of a direction that is perpendicular to z, scaled to unit length.
 Vector3 perpendicular(const Vector3& direction, const Vector3& z);
 
-/// The rigid motion from the first copy to copy k, in the base frame.
+/// The rigid motion from the first copy (k = 0) to copy k, in the base frame.
 Transform turned(const Copies& copies, std::size_t k);
 
 }  // namespace poesy::file

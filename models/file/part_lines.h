@@ -19,7 +19,7 @@ struct BodyLines {
   std::optional<Triple> at;        ///< origin at home
   std::optional<Triple> x;         ///< x axis at home; default: the base's x axis
   std::optional<Triple> z;         ///< z axis at home; given if and only if `x` is given
-  Copies copies;                   ///< number of copies
+  Copies copies;                   ///< number of copies, and the axis of their rotation
   std::optional<Expression> mass;  ///< mass; default: 0
   std::optional<Triple> centre;    ///< centre of mass, in the body's frame; default: its origin
 };
@@ -82,7 +82,7 @@ LoadLines read_load(const StudyValue& value);                 ///< Reads the tab
 
 std::string load_text(const LoadLines& load);  ///< The keys of `[load]` as TOML, line by line.
 
-/// The tables of bodies, stiffness and loads with all keys, for the reference.
+/// The tables of bodies, stiffness and loads with all keys, for key_reference().
 StudyTables part_tables();
 
 }  // namespace poesy::file

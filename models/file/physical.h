@@ -30,7 +30,7 @@ struct Powers {
 struct Physical {
   std::string_view name;     ///< name with its article: "a stiffness"
   Powers powers;             ///< dimension
-  std::string_view unit;     ///< unit that names the quantity in messages, "N/m"; empty if the name is enough
+  std::string_view unit;     ///< unit that messages add to the name, "N/m"; empty if the name is enough
   std::string_view example;  ///< an example: "20 N/um"; empty for a number
 };
 
@@ -60,7 +60,7 @@ inline constexpr Physical kRotationalStiffness{
 /// Unit Pa.
 inline constexpr Physical kModulus{"a modulus", {.length = -1, .mass = 1, .time = -2}, "Pa", "210 GPa"};
 
-/// The quantity that has this dimension of the engine.
+/// The quantity that corresponds to a Dimension of the engine.
 const Physical& physical(Dimension dimension);
 
 /// A dimension as text: "a length", "an angle", "a number", "length^2 angle^-1". If mass or time is among the powers,

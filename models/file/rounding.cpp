@@ -71,7 +71,8 @@ double largest_mismatch(const std::vector<PoseMobility>& poses) {
   return largest;
 }
 
-/// The result of treating numbers as rounded. Both members are empty if the mechanism does not pass check_mobility().
+/// The result of treating numbers as rounded. Both members are empty if the mechanism does not pass check_mobility(),
+/// or if the gap vanishes at a pose of the workspace.
 struct Attempt {
   std::optional<Checked> checked = {};
   std::optional<InputError> misfit = {};  ///< set if the loops close to kNamedGap of the reach, but not to kRoundedGap

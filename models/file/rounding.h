@@ -23,7 +23,8 @@ struct Checked {
   double mismatch = 0.0;
 };
 
-/// Whether checked() requires that some pose of the workspace is reached (in_reach) or not (as_it_is).
+/// Whether checked() also checks the mobility at poses of the workspace, of which at least one must be reached
+/// (in_reach), or only at home (as_it_is).
 enum class Workspace { as_it_is, in_reach };
 
 /// Checks a mechanism. The numbers count as exact if the mechanism passes check_mobility(), and if no path to the poses
@@ -33,7 +34,9 @@ enum class Workspace { as_it_is, in_reach };
 /// singular value: at the widest gap with which the mechanism passes check_mobility(). Its loops must close to
 /// kRoundedGap of the reach. If the mechanism does not pass as rounded either, the function throws the error of
 /// check_mobility(); but if the loops close to kNamedGap, the InputError names the joint whose numbers would close
-/// them. If check_mobility() found no error, the numbers count as exact although some loops stay open.
+/// them. If check_mobility() found no error, the numbers count as exact although some loops stay open. A branched
+/// mechanism with stiffness is never treated as rounded if check_mobility() finds an error; then this error is
+/// thrown.
 Checked checked(Mechanism mechanism, Workspace workspace);
 
 }  // namespace poesy::file

@@ -226,8 +226,8 @@ class Stiffness {
     return section;
   }
 
-  /// Throws if the axis of a joint inside a beam is not on the beam's line, because the beam would not stay straight
-  /// when the joint moves.
+  /// Throws if the axis of a joint between the ends of a link is not on the link's line, because the link would not
+  /// stay straight when the joint moves.
   void check_between(const LinkLines& link, const assembly::Link& made, const Vector3& along, const Vector3& begin,
                      const Limb& limb) const {
     using At = assembly::LinkEnd::At;

@@ -229,8 +229,8 @@ static bool is_part_of_sphere(const Joint& universal, const Limb& limb, double r
   });
 }
 
-/// The clause of axes_along_legs() about the axis `key` of a joint of this limb; empty if no leg leads to `end`, or if
-/// the axis lies across it.
+/// The clause of axes_along_legs() about the axis `key` of a joint of this limb. end: joint at the other end of the
+/// leg. Empty if `end` is null, or if the axis is at 20 deg or more to the leg.
 static std::string along_leg_text(std::string_view key, const Joint& joint, const Joint* end, const Limb& limb) {
   constexpr double kAlong = 20.0;  // deg
   if (end == nullptr) return {};

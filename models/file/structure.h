@@ -33,9 +33,9 @@ Sketch sketch_of(const Mechanism& mechanism);
 /// Clauses about coordinates whose value at home is outside the workspace, one clause for each.
 std::vector<std::string> home_outside(const Mechanism& mechanism);
 
-/// A clause about a universal joint whose axis on the leg's side lies nearly along the line to the leg's next point, at
-/// home. The leg leads to another universal or to a spherical joint. Such a joint lets the leg swing about one axis only. At most one clause, because the
-/// copies of a limb share it.
+/// A clause about the first universal joint whose axis on the leg's side is at less than 20 deg to the leg, at home.
+/// The leg is the line to the next joint of type R, U or S, if this is U or S. Such an axis lets the leg swing about
+/// one axis only. At most one clause, because the copies of a limb share it.
 std::vector<std::string> axes_along_legs(const Mechanism& mechanism);
 
 /// Clauses about errors with limb = "each" whose limbs do not all have the same joint motions in the same order, one
@@ -47,7 +47,8 @@ std::vector<std::string> unlike_limbs(const Mechanism& mechanism);
 std::vector<std::string> rounding_remarks(const Mechanism& mechanism, double mismatch);
 
 /// Lines about the mobility at home: joints, ranks, freedoms, and the singular values just above and below the rank's
-/// threshold. Then lines about the first poses of the workspace whose mobility differs from that at home.
+/// threshold. Then lines about the first poses of the workspace whose mobility differs from that at home, and about the
+/// largest parasitic motion of the platform.
 std::vector<std::string> mobility_lines(const Mechanism& mechanism, const Mobility& home,
                                         std::span<const PoseMobility> poses);
 

@@ -37,8 +37,9 @@ enum class Given { coordinates, drives };
 /// so that the limbs stay in the working mode that they have at home. Each Newton step is the least-squares solution
 /// with the least norm, so redundant loop equations do no harm. The joints of one drive are one unknown. If several
 /// displacements give the pose, the tracker chooses among those nearby the ones with the least sum of squares (rad, and
-/// lengths in units of the reach), so that idle freedoms do not depend on the path. With rounded numbers (Precision) a
-/// pose is the least-squares one in the metric. A result depends only on the mechanism and the pose.
+/// lengths in units of the reach), so that idle freedoms do not depend on the path. With rounded numbers (Precision)
+/// the limbs do not quite fit, and the tracker finds the configuration with the least mismatch in the metric. A result
+/// depends only on the mechanism and the pose.
 class Tracker {
  public:
   /// Copies the mechanism. Precondition for Given::drives: if all drives are held, the platform has no freedom.

@@ -89,7 +89,7 @@ Vector3<T> moved_by_rotation(const Vector3<T>& w, const Vector3<T>& x) {
   return a * across + b * w.cross(across);
 }
 
-/// The left Jacobian V of SO(3) at w, for which exp([w; v]) = (exp(w), V v). It is Eq. A4 of Du et al. 2022 for a w of
+/// The left Jacobian V of SO(3) at w, for which exp([w; v]) = (exp(w), V v). V is Eq. A4 of Du et al. 2022 for a w of
 /// any length.
 template <class T>
 Matrix3<T> left_jacobian(const Vector3<T>& w) {

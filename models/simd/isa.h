@@ -11,19 +11,19 @@
 namespace poesy::simd {
 
 /// The largest number of lanes of any instruction set. The arrays with one number for each sample are padded to
-/// multiples of it.
+/// multiples of this number.
 inline constexpr std::size_t kMostLanes = POESY_MOST_LANES;
 
 /// Instruction sets that kernels are compiled for.
 enum class Isa {
-  plain,   ///< one double at a time, on every machine
+  plain,   ///< one double at a time, on every computer
   avx2,    ///< 4 lanes, with fused multiply-add
   avx512,  ///< 8 lanes
   neon     ///< 2 lanes
 };
 
-/// The best instruction set that this machine supports, or the one named by the environment variable POESY_ISA (plain,
-/// avx2, avx512, neon). Throws InputError if the variable names anything else, or a set that this machine does not
+/// The best instruction set that this computer supports, or the one named by the environment variable POESY_ISA (plain,
+/// avx2, avx512, neon). Throws InputError if the variable names anything else, or a set that this computer does not
 /// support.
 Isa selected_isa();
 

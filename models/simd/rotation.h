@@ -28,7 +28,7 @@ inline T dot3(const T* a, const T* b) {
 }
 
 // Taylor series in x = theta^2 of sin(theta) / theta, (1 - cos(theta)) / theta^2 and (theta - sin(theta)) / theta^3.
-// They are exact to rounding at the small angles for which the functions below use them.
+// The series are exact to rounding at the small angles for which the functions below use them.
 inline constexpr double kSincSeries[] = {1.0,           -1.0 / 6.0,        1.0 / 120.0,        -1.0 / 5040.0,
                                          1.0 / 362880., -1.0 / 39916800.0, 1.0 / 6227020800.0, -1.0 / 1307674368000.0};
 inline constexpr double kCoscSeries[] = {

@@ -18,7 +18,7 @@ namespace poesy::three_prs {
 /// nominal displacement.
 struct LimbWithErrors {
   lie::Vector3<double> carriage;         ///< centre of the revolute joint
-  lie::Matrix3<double> base_R_revolute;  ///< second column: axis of the revolute joint
+  lie::Matrix3<double> base_R_revolute;  ///< rotation matrix; its second column is the axis of the revolute joint
   /// From the carriage to the spherical joint C_i, in the revolute joint's frame before the swing.
   lie::Vector3<double> rod;
   lie::Vector3<double> joint;  ///< from P to C_i, at the nominal rotation of the platform
@@ -51,8 +51,8 @@ class ClosureStart {
   /// The first-order motion of the platform for limbs with errors, at which a solve starts.
   PlatformMotion operator()(const std::array<LimbWithErrors, kLimbs>& limbs) const;
 
-  /// The matrix that maps the values of the six equations at zero displacement to [delta; dr] (rad, m); zero at a
-  /// singular pose.
+  /// The matrix that maps the values of the six equations at zero displacement to the first-order motion [delta; dr]:
+  /// rotation vector of the platform (rad) and displacement of P (m). Zero at a singular pose.
   const lie::Matrix6<double>& from_residual() const { return from_residual_; }
   /// The order in which partial pivoting eliminates the six equations, if the columns of the Jacobian are in the order
   /// [dr; delta]: entry n is the place (from 0) of equation n in this order.
@@ -108,15 +108,15 @@ Closing close_limbs(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::
 
 /// Returns true if the limbs cannot be assembled near `start`. From `start`, a descent (linalg::comes_to_rest()) leads
 /// to a minimum of the mismatch of the limbs. The result is true if the mismatch at the minimum is more than 1e-9 of
-/// |r|: the three limbs of the 3-PRS do not over-constrain it, so the mismatch vanishes if the machine can be assembled
-/// near `start`. Returns false if the descent does not converge.
+/// |r|: the three limbs of the 3-PRS do not over-constrain the platform, so the mismatch vanishes if the machine can be
+/// assembled near `start`. Returns false if the descent does not converge.
 bool is_impossible(const std::array<LimbWithErrors, kLimbs>& limbs, const lie::Vector3<double>& r,
                    const PlatformMotion& start);
 
 /// The swing th_i + dphi_i (rad) of a limb's rod at this motion, measured from th = 0 in the revolute joint's frame.
 double swing(const LimbWithErrors& limb, const lie::Vector3<double>& r, const PlatformMotion& motion);
 
-/// Solves the closure of all limbs for blocks of samples with the fastest kernel that this machine supports.
+/// Solves the closure of all limbs for blocks of samples with the fastest kernel that this computer supports.
 /// close_limbs() solves the samples that the kernel gives up. An object has scratch memory, so each thread needs its
 /// own object.
 class ClosureSolver {

@@ -12,7 +12,7 @@ namespace poesy::three_prs {
 using ErrorMapping = Eigen::Matrix<double, 6, static_cast<int>(kFactors), Eigen::RowMajor>;
 
 /// The matrix G [6 x 60] of J [theta; dr] = G eps. Its rows are those of velocity_jacobian(), its columns the errors
-/// eps in the order of factors(). It differs from Eqs. 16-18 of San et al. 2023 in the columns of c. All three
+/// eps in the order of factors(). G differs from Eqs. 16-18 of San et al. 2023 in the columns of c. All three
 /// components of c enter the drive row of their limb by -w^T R R_i / cos th and its constraint row by -v^T R R_i. The
 /// printed -1 is correct only for the projection w^T dc, and the printed sign in Eq. 17 is wrong.
 ErrorMapping error_mapping(const Geometry& geometry, const Configuration& nominal);

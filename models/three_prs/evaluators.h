@@ -9,7 +9,8 @@
 
 namespace poesy::three_prs {
 
-/// Number of responses that are components of vectors. They have the order of the first nine rows of Effects.
+/// Number of responses that are components of vectors. These components have the order of the first nine rows of
+/// Effects.
 inline constexpr std::size_t kComponents = 9;
 inline constexpr std::size_t kResponses = kComponents + 3;
 
@@ -36,9 +37,9 @@ enum class Fidelity : std::size_t {
 std::unique_ptr<Evaluator> head_evaluator(const Geometry& geometry, Fidelity fidelity, const SolverOptions& options);
 
 /// An evaluator like head_evaluator(), but with the displacements after the best correction of the carriages
-/// (Model::calibrated_evaluator, Corrections). It subtracts from [theta; dr], and from the swings of the rods, the
-/// parts that the correction causes. The displacement of the tool tip and the norms follow from the corrected [theta;
-/// dr], with finite rotations if the fidelity is exact. At a singular pose every sample is singular.
+/// (Model::calibrated_evaluator, Corrections). The evaluator subtracts from [theta; dr], and from the swings of the
+/// rods, the parts that the correction causes. The displacement of the tool tip and the norms follow from the corrected
+/// [theta; dr], with finite rotations if the fidelity is exact. At a singular pose every sample is singular.
 std::unique_ptr<Evaluator> calibrated_head_evaluator(const Geometry& geometry, Fidelity fidelity,
                                                      const SolverOptions& options);
 
@@ -46,8 +47,8 @@ std::unique_ptr<Evaluator> calibrated_head_evaluator(const Geometry& geometry, F
 /// non_finite if its responses overflow.
 void fill_norms(const OutcomeBlock& outcomes);
 
-/// The trace of the solve of one sample at a reachable pose (alpha, beta, z). errors: the 60 of the head, SI. Exact
-/// solves use close_limbs(). First-order solves use the evaluator, which does not iterate.
+/// The trace of the solve of one sample at a reachable pose (alpha, beta, z). errors: the values of the 60 errors of
+/// the head, SI. Exact solves use close_limbs(). First-order solves use the evaluator, which does not iterate.
 SolveTrace head_trace(const Geometry& geometry, Fidelity fidelity, std::span<const double> pose,
                       std::span<const double> errors, const SolverOptions& options);
 

@@ -23,9 +23,9 @@ inline constexpr std::size_t kVectorRows = 9;
 inline constexpr std::size_t kResponseRows = 12;
 inline constexpr std::size_t kDetailRows = 3;  ///< number of additional outputs: swings of the three rods
 
-/// At most kTile samples. Each error or response has a row of numbers, one for each sample: row v has the number of
-/// sample b at v * stride + b. Rows can be read and written up to the next multiple of kMostLanes; the numbers behind
-/// the last sample are overwritten.
+/// A tile: the data of at most kTile samples. Each error or response has a row of numbers, one for each sample: row v
+/// has the number of sample b at v * stride + b. Rows can be read and written up to the next multiple of kMostLanes;
+/// the numbers behind the last sample are overwritten.
 struct Tile {
   std::size_t count;            ///< number of samples
   const double* values;         ///< [varied x stride] values of the varied errors, SI
@@ -71,7 +71,7 @@ struct ClosurePose {
   /// Matrix from the values of the equations at zero displacement to the starting point [delta; dr] of the iteration:
   /// rotation of the platform (rad) and displacement of P (m).
   double start[36];
-  /// [equations] Row (place in the order of elimination) of each equation. Unlike above, dr is before delta in the
+  /// [equations] Row (place in the order of elimination) of each equation. Unlike in `start`, dr is before delta in the
   /// columns of the kernel's Jacobian.
   std::size_t row[6];
   double pivot_sign;  ///< sign of the product of the pivots without errors: 1.0 or -1.0; 0 at a singular pose

@@ -9,8 +9,8 @@
 
 namespace poesy::three_prs {
 
-/// Cuts blocks of samples into tiles. A tile whose number of samples is not a multiple of kMostLanes is copied to
-/// padded rows.
+/// Cuts blocks of samples into tiles of at most kTile samples. A tile whose number of samples is not a multiple of
+/// kMostLanes is copied to padded rows.
 class Tiles {
  public:
   /// Calls work(tile) for each tile of a block. Tile::details is null if the caller does not want the swings of the

@@ -29,9 +29,9 @@ struct Pose {
 lie::Transform<double> base_T_platform(const Pose& pose);
 
 /// The displacements q_i,j (rad, m) of the four joints j of each of the three limbs i, limb by limb (Du et al. 2022,
-/// Eqs. 1-11). They are counted from the home configuration. Angles are computed by atan2 about the joint's axis. From
-/// 0 to pi they equal the printed arccos, but lose no digits near 0 and pi. They continue past pi if a leg swings past
-/// the line of the platform.
+/// Eqs. 1-11). The displacements are counted from the home configuration. Angles are computed by atan2 about the
+/// joint's axis. From 0 to pi they equal the printed arccos, but lose no digits near 0 and pi. The angles continue past
+/// pi if a leg swings past the line of the platform.
 std::array<double, 12> joint_displacements(const Geometry& geometry, const Pose& pose);
 
 /// The points A1, A2, A3 (m, platform frame) at which the limbs are joined to the platform.

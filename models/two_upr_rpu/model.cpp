@@ -138,7 +138,7 @@ class TwoUprRpu : public Model {
   }
 
   /// The bound of an error that is a length is l_A (of the platform) or l_B (of the base), whichever is smaller,
-  /// because every limb joins both. The offsets c and d are not links and may be 0.
+  /// because every limb joins platform and base. The offsets c and d are not links and may be 0.
   ErrorBound error_bound(FactorIndex factor) const override {
     if (description_.factors[factor.value].dimension == Dimension::angle) return {std::numbers::pi, "half a turn"};
     if (geometry_.l_A < geometry_.l_B) return {geometry_.l_A, "the platform's size l_A"};

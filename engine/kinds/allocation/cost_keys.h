@@ -11,8 +11,8 @@ namespace poesy {
 /// The keys of a cost in study files. They are the same for the cost of a part and the cost of a process.
 StudyTable cost_table();
 
-/// Reads a cost. dimension: whether the tolerance is a length or an angle. Throws InputError at the value if it is not
-/// a cost.
+/// Reads a cost. dimension: that of the tolerance (length, angle or number). Throws InputError at the value if the
+/// value is not a cost.
 StatedCost read_cost(const StudyValue& value, Dimension dimension);
 
 /// The cost as an inline table of TOML, which reads back as the same cost. Precondition: the cost has a law.

@@ -19,13 +19,13 @@ double sigma_per_tolerance(const Spread& spread);
 
 /// The mean square of a part's errors, divided by T^2: ((1 - shift) / sigmas)^2 + shift^2. The shift is treated as a
 /// random offset that is positive as often as negative and independent of other parts, so mean squares add as variances
-/// do. If the offsets of all parts acted in the same direction, their effects would add linearly. The sum could then be
-/// sqrt(parts) times as large.
+/// do. If the offsets of all parts acted in the same direction, their effects would add linearly. The total offset
+/// could then be up to sqrt(number of parts) times as large.
 double mean_square_per_tolerance(const Spread& spread);
 
 /// Errors whose mean squares depend equally on the tolerance T of a part.
 struct DrawnErrors {
-  std::vector<std::size_t> errors;  ///< positions of the errors among those of the study
+  std::vector<std::size_t> errors;  ///< positions among the errors that the study varies
   /// What the tolerance T adds to the mean square of each error, divided by T^2. Negative for errors that become larger
   /// if T becomes finer: a finer zone of orientation leaves more of the zone of location to the middle of the feature.
   double mean_square;

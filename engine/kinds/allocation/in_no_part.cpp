@@ -44,7 +44,7 @@ std::string names_and_sizes(const std::vector<UnallocatedError>& errors) {
   return fmt::format("{}", fmt::join(texts, "; "));
 }
 
-/// A clause on what finds tolerances of these errors.
+/// A clause that tells the user how to get tolerances for these errors.
 std::string_view remedy_text(const std::vector<UnallocatedError>& errors) {
   if (std::ranges::all_of(errors, &UnallocatedError::is_per_pose)) {
     return "no part can have them, because a machine draws them anew at each pose";

@@ -95,8 +95,9 @@ void doubt_unlike_limbs(const StudySection& block, Study& study) {
   study.doubts.push_back(std::move(doubt));
 }
 
-/// The distance in standard deviations from the mean to the end of the part's errors. None if the errors are normal or
-/// measured, if their distributions differ in shape, or if the part is a zone.
+/// The distance from the mean to the end of the distribution of the part's errors, in standard deviations. None if
+/// this distance is not finite (normal, measured or given errors) or differs among the errors, or if the part is a
+/// zone.
 std::optional<double> end_in_sigmas(const AllocatedPart& part, const Study& study) {
   if (part.zone) return {};
   const auto end = [&](FactorIndex error) {
@@ -112,10 +113,11 @@ std::optional<double> end_in_sigmas(const AllocatedPart& part, const Study& stud
   return first;
 }
 
-/// Adds a warning for each distribution of errors that end well before or beyond the tolerances of their parts.
+/// Warns of parts whose errors end well within the tolerance, or well beyond it. Parts with the same numbers share a
+/// warning.
 void doubt_ends(std::span<const AllocatedPart> parts, Study& study) {
   constexpr double kAlike = 0.05;  // relative; a normal truncated at 3 sigma ends 3.04 of its standard deviations away
-  std::map<std::pair<double, double>, std::vector<std::string_view>> parts_of;  // by sigmas and the end in sigmas
+  std::map<std::pair<double, double>, std::vector<std::string_view>> parts_of;  // by sigmas and end_in_sigmas()
   for (const AllocatedPart& part : parts) {
     const auto end = end_in_sigmas(part, study);
     if (end && std::abs(*end - part.sigmas) > kAlike * *end) parts_of[{part.sigmas, *end}].push_back(part.name);
@@ -155,9 +157,9 @@ std::string parts_lines(const Study& study) {
   return text;
 }
 
-/// A line of a template with the key identical_limbs and the limbs that have features of the same names, because such
-/// limbs share tolerances in most drawings. The line of shown_identical_limbs() if there are no such limbs, if not
-/// every shared name is in the same limbs, or if these limbs have different joints.
+/// The line identical_limbs of a template, with the limbs that have features of the same names: in most drawings, these
+/// limbs share tolerances. The line is that of shown_identical_limbs() if no name is in several limbs, if two names are
+/// in different sets of limbs, or if the limbs have different joints.
 std::string limbs_with_alike_features(const Study& study) {
   std::map<std::string, std::set<std::size_t>> limbs_of;
   for (const Feature& feature : study.model().features) limbs_of[feature.label].insert(feature.limb);

@@ -18,7 +18,7 @@
 
 namespace poesy {
 
-/// The largest number of machines in a piece of work. One thread solves these machines together at each pose.
+/// The largest number of machines that one thread solves together at a pose.
 inline constexpr std::size_t kMachinesOfPiece = 200;
 
 /// SolveCounts for a piece of work that does not record how its solves ended: all solves count as converged. Only
@@ -47,8 +47,8 @@ class LoadSolver : protected UnitSolver {
     if (calibration != nullptr) calibrator_ = std::make_unique<MachineCalibrator>(*calibration);
   }
 
-  /// Draws the errors of these machines at the first pose into `values_` [errors x machines]. machines: ascending, at
-  /// most kMachinesOfPiece.
+  /// Draws the errors of these machines into `values_` [errors x machines]. Errors that machines draw anew at each pose
+  /// get their values at the first pose. machines: numbers, ascending, at most kMachinesOfPiece.
   void draw(std::span<const std::size_t> machines) {
     const std::size_t count = machines.size();
     const std::size_t errors = plan_->factors().size();
@@ -107,10 +107,10 @@ class LoadSolver : protected UnitSolver {
     return outcomes;
   }
 
-  /// Takes the limits into account that are judged from several poses together. Computes the load of each machine under
-  /// such a limit from the values that add_pose() recorded, raises the machine's element of `loads` to it if it is
-  /// larger, and sets `beyond` [limits x machines] as add_pose() does. The load of a machine that is not solved at some
-  /// pose is meaningless.
+  /// For each limit that is judged from several poses together: computes the load of each machine from the values that
+  /// add_pose() recorded, writes this load into `loads` [machines] if it is larger than the element there, and sets
+  /// `beyond` [limits x machines] as add_pose() does. The load of a machine that is not solved at some pose is
+  /// meaningless.
   void end_poses(std::span<double> loads, std::span<std::uint8_t> beyond) {
     const std::size_t count = loads.size();
     for (std::size_t k = 0; k < limits_.size(); ++k) {
@@ -149,7 +149,7 @@ class LoadSolver : protected UnitSolver {
   std::unique_ptr<MachineCalibrator> calibrator_;  ///< null: machines are not calibrated
   std::unique_ptr<Evaluator> calibrated_;          ///< evaluator of the machines that were calibrated last
   /// [limits x machines x poses] Values for limits that are judged from several poses together: the response (SI) for a
-  /// limit on a spread, otherwise the load. Empty without such a limit.
+  /// limit on a spread, otherwise the load. Empty if all limits are judged pose by pose.
   std::vector<double> at_poses_;
 };
 

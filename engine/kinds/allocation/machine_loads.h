@@ -16,8 +16,8 @@
 namespace poesy {
 
 /// The loads of machines at given tolerances. The load of a machine is the largest ratio of a response to its limit,
-/// over all limits and poses, so a machine is good if its load is at most 1. A machine that is not solved at a pose has
-/// an infinite load.
+/// both measured from the centre of the limit (RelativeLimits::load()), over all limits and poses. A machine is good if
+/// its load is at most 1. A machine that is not solved at a pose has an infinite load.
 struct MachineLoads {
   std::vector<double> load;           ///< [machines] load of each machine, in the order of their numbers
   std::vector<SolveCounts> solves;    ///< [poses] how the solves at each pose ended

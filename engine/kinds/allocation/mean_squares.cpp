@@ -21,8 +21,8 @@ namespace {
 /// mean mu, its standard deviation sigma and c = Distribution::centre().
 constexpr std::size_t kNodes = 3;
 constexpr std::size_t kDrawsOfPiece = 16;  ///< number of draws of the other errors in a piece of work
-/// If a sample is not solved in which one error is varied and all others are at their centres, its response minus the
-/// centre of the limit counts as this multiple of RelativeLimits::room().
+/// If the mechanism is not solved while one source of scatter is varied and all others are at their centres, the mean
+/// square that this source adds is the square of this multiple of RelativeLimits::room().
 constexpr double kUnsolvedOverLimit = 10.0;
 constexpr double kLargestSum = 1e100;  ///< the largest sum of squares that a checkpoint may contain, so that slopes
                                        ///< computed from it are finite
@@ -205,17 +205,17 @@ class AddedSquaresEvaluator : private UnitSolver {
   Sources sources_;
   const MachineCalibration* calibration_;
   std::unique_ptr<MachineCalibrator> calibrator_;  ///< null: machines are not calibrated
-  /// Evaluators of the calibrated machines of a block of pairs, by the position of its first pair.
+  /// Evaluators of the calibrated machines. The key is the number of the first of the pairs that add_pairs() solves
+  /// together.
   std::map<std::size_t, std::unique_ptr<Evaluator>> calibrated_;
   std::vector<double> draws_;     ///< [errors x draws] draws of all errors, SI
   std::vector<double> rounding_;  ///< [limits] Model::rounding of the limited response, SI
 };
 
-/// The sums over all pieces of work, in SI units. The sources of scatter are those of Sources. A row is a limit at a
-/// pose; the poses of the first limit come first.
+/// The sums over all pieces of work, in SI units. A row is a limit at a pose; the poses of the first limit come first.
 struct SquareSums {
   const Pieces* pieces;
-  std::size_t sources;        ///< number of sources
+  std::size_t sources;        ///< number of sources of scatter (Sources)
   std::vector<double> base;   ///< [rows] square of the response minus its centre, with all errors at their
                               ///< centres; 0 if the mechanism is not solved
   std::vector<double> alone;  ///< [rows x sources] mean square that each source adds if all others are at their centres
@@ -365,7 +365,7 @@ class SpreadRows {
   const SquareJob& job_;
   std::size_t poses_;
   double rounding_ = 0.0;  ///< changes of the response up to this are rounding, SI
-  double solved_ = 0.0;    ///< number of poses at which the present source is solved
+  double solved_ = 0.0;    ///< number of poses at which the mechanism is solved with the present source varied
   Nodes mean_{};           ///< mean of the response over these poses at each node, SI
 };
 

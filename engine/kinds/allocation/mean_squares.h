@@ -21,7 +21,8 @@ struct MeanSquares {
   std::vector<double> room;   ///< [rows] RelativeLimits::room, SI; the root mean square is compared with it
 };
 
-/// The usual number of draws of the other errors with which the effect of each error is measured.
+/// The number of draws of all other errors over which the effect of one error is averaged (`draws` of mean_squares()).
+/// The first linearisation, and studies that calibrate machines, use 0 draws instead.
 inline constexpr std::size_t kDrawsAmongOthers = 64;
 
 /// Measures the mean squares at the plan's errors.
@@ -34,12 +35,12 @@ inline constexpr std::size_t kDrawsAmongOthers = 64;
 /// error add the difference `t - o`. Each interaction belongs to two errors, so half of it is counted for each. Below,
 /// y(c) is y with all errors at their centres, and the sum is over the errors:
 ///
-///     value = y(c)^2 + sum of (o + t) / 2,     slope = t / sigma^2.
+///     value = y(c)^2 + sum of (o + t) / 2,     slope = max(0, t) / sigma^2.
 ///
 /// If errors do not interact, or if draws = 0, t = o, so the value has no sampling noise. For a limit on a spread, y is
-/// the response minus its mean over the poses, and t is always o. If a sample is not solved, its y counts as ten times
-/// MeanSquares::room if the other errors are at their centres; the sample is left out if they are drawn. The result
-/// has the same bits for any number of threads and on all ranks. None if the run was stopped.
+/// the response minus its mean over the poses, and t is always o. If the mechanism is not solved at one of the three
+/// values of e, o is (10 x MeanSquares::room)^2; draws of the other errors for which this happens are left out of t.
+/// The result has the same bits for any number of threads and on all ranks. None if the run was stopped.
 ///
 /// With a calibration, y is what remains of the response after a calibration without measurement noise, and `draws`
 /// must be 0. The noise of each measured value then adds to MeanSquares::value as an error with the same standard

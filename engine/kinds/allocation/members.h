@@ -21,12 +21,12 @@ Limbs read_limbs(const StudyValue& value, const ModelDescription& model);
 /// each pose.
 void check_distributions(const StudyValue& value, const PartMembers& members, const Study& study);
 
-/// The errors of each part of a block. Without the key `each`, a block is one part. With it, every error is a part, but
-/// corresponding errors of identical limbs form one part. No error is in two parts of the block. Throws InputError for
-/// an error that does not exist, that the study does not vary, or that check_distributions() refuses.
+/// The errors of each part of a block. Without `each = true`, a block is one part. With `each = true`, every error is a
+/// part, but corresponding errors of identical limbs form one part. No error is in two parts of the block. Throws
+/// InputError for an error that does not exist, that the study does not vary, or that check_distributions() refuses.
 std::vector<PartMembers> read_members(const StudySection& block, const Study& study);
 
-/// Whether the block has the key `each`, with which every error is a part of its own.
+/// Whether the block states `each = true`, so that every error is a part unless identical limbs share it.
 bool is_each(const StudySection& block);
 
 }  // namespace poesy

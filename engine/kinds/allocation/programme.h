@@ -29,8 +29,8 @@ struct TolerancePoint {
 /// The tolerances that the optimisation (ToleranceProgramme::choose) chose under the limits.
 struct ChosenTolerances : TolerancePoint {
   double lower_bound = 0.0;        ///< lower bound on the least cost; NaN if the aim is not Aim::least_cost
-  std::vector<double> multiplier;  ///< [rows of ToleranceLimits] cost saved per unit of additional room; empty if the
-                                   ///< aim is not Aim::least_cost
+  std::vector<double> multiplier;  ///< [rows of ToleranceLimits] cost saved per unit of additional
+                                   ///< ToleranceLimits::room; empty if the aim is not Aim::least_cost
 };
 
 /// The region around the tolerances of a linearisation in which the optimisation may choose tolerances.
@@ -79,8 +79,9 @@ class ToleranceProgramme {
   /// if the part has none of these.
   std::string chosen_name(std::size_t part, std::size_t process) const;
 
-  /// [parts] The tolerances that follow from the sizes of errors in [errors] of the study, from the smallest size in
-  /// each part; for zones, the tolerances of the drawing. All are moved within the bounds of the parts.
+  /// [parts] The tolerance (SI) of each part that follows from [errors] of the study: from the smallest standard
+  /// deviation of the part's errors; for a zone, the smallest size on the drawing. at_most() then replaces tolerances
+  /// that the parts cannot have.
   std::vector<double> usual() const;
   /// The point at which each part has its largest possible tolerance that is not above `tolerance` [parts]; if there is
   /// none, its lowest tolerance.
@@ -108,6 +109,7 @@ class ToleranceProgramme {
   void keep_allowed(ToleranceLimits& limits) const;
   /// The limits on the mean squares that all parts together cause: room = (share x MeanSquares::room x wider)^2 minus
   /// the mean square that no part causes, SI squared. at: [parts] tolerances at which the mean squares were measured.
+  /// share: the share of each limit that root mean squares may use. wider: a factor on all limits.
   ToleranceLimits limits(const MeanSquares& squares, std::span<const double> at, double share,
                          double wider = 1.0) const;
   /// Solves the optimisation problem of the study's aim under these limits.
@@ -129,8 +131,8 @@ class ToleranceProgramme {
 
   const Study& study_;
   std::vector<std::vector<Process>> processes_;   ///< [parts] processes of each part
-  std::vector<DrawnPart> drawn_;                  ///< [parts] effect of each part on its errors
-  std::vector<std::vector<std::size_t>> errors_;  ///< [parts] positions of each part's errors
+  std::vector<DrawnPart> drawn_;                  ///< [parts] how the mean squares of the errors depend on T
+  std::vector<std::vector<std::size_t>> errors_;  ///< [parts] positions of each part's errors, see errors()
   std::vector<Within> pairs_;
   bool has_costs_ = false;
 };

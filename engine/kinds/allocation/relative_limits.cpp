@@ -64,7 +64,7 @@ double RelativeLimits::room(std::size_t k, PoseIndex pose) const {
 
 namespace {
 
-/// Corrects a load for rounding, so that it is at most 1 exactly if the limit holds.
+/// Corrects a load for rounding, so that it is at most 1 if and only if the limit holds.
 double rounded_load(double load, bool holds) {
   return holds ? std::min(load, 1.0) : std::max(load, std::nextafter(1.0, 2.0));
 }

@@ -20,7 +20,8 @@ using Limit = Axis<"limit">;  ///< Limits of a study.
 /// The limits of a study as distances from a centre. For a limit with one or two ends, the centre is the response of
 /// the mechanism with the constant errors of the background and all varied errors at their own centres
 /// (Distribution::centre: zero, or a stated mean); the deviation from this response grows with the tolerances. For a
-/// limit on a magnitude, the centre is zero. For a limit on the spread over the poses, it is the mean over the poses.
+/// limit on a magnitude, the centre is zero. For a limit on the spread over the poses, the centre is the machine's mean
+/// over the poses.
 class RelativeLimits {
  public:
   /// Solves the mechanism with all errors at their centres at all poses of the plan, unless all limits are on

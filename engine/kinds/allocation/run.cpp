@@ -245,7 +245,7 @@ void add_curves(const SearchProblem& problem, const FoundTolerances& search, All
     if (loads.size() < trials_without_failure(yield, confidence)) continue;
     const std::uint64_t rejects = allowed_rejects(yield, confidence, loads.size()).design;
     const double load = loads[rejects];
-    if (rejects == 0 || !(load > 0.0) || std::isinf(load)) continue;  // too few machines to estimate this yield
+    if (rejects == 0 || !(load > 0.0) || std::isinf(load)) continue;  // too few machines, or too many not solved
     found.curve_yield.push_back(yield);
     costs.push_back(scale * predicted_cost(problem, search, share / load, 1.0));
   }

@@ -19,10 +19,10 @@ std::vector<bool> none_stays(const SearchProblem& problem) {
   return std::vector<bool>(problem.programme.size(), false);
 }
 
-/// A candidate that was chosen under changed limits on root mean squares, and whether its tolerances changed.
+/// A candidate that was chosen under changed limits on root mean squares.
 struct Rescaled {
   Candidate candidate;
-  bool moved;
+  bool moved;  ///< whether its tolerances changed, or its limits became as small as the deciding load demands
 };
 
 /// Divides the limits on root mean squares by the deciding load (deciding_load()) and chooses tolerances under them. If

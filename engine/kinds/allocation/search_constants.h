@@ -6,8 +6,9 @@
 /// theory.md ("From root mean squares to a certificate") describes the method.
 namespace poesy::allocation {
 
-/// The size of errors in the first linearisation, as a share of their usual size. Make it smaller if the first
-/// linearisation is far from the last one, larger if responses to such small errors drown in rounding.
+/// The tolerances in the first linearisation, as a share of those that follow from [errors] of the study
+/// (ToleranceProgramme::usual()). Make the share smaller if the first linearisation is far from the last one, larger if
+/// rounding hides the effects of such small errors.
 inline constexpr double kLinearSize = 0.01;
 /// The trust region of a linearisation: the factor by which a tolerance may grow. Make it smaller for mechanisms in
 /// which the effect of an error changes much if its tolerance grows by this factor.
@@ -30,7 +31,7 @@ inline constexpr double kLoadTolerance = 2e-3;
 inline constexpr double kFinalLoadTolerance = 1e-5;
 /// Machines with loads below this share of the deciding load are screened out: they are not tried again, because small
 /// changes of tolerances do not make them decide. Make it smaller if the last scaling finds rejects among these
-/// machines (D66).
+/// machines (decision D66).
 inline constexpr double kScreeningLoad = 0.75;
 /// The number of all machines divided by the number in a pilot, which is a trial of only a part of the machines. Make
 /// it smaller if the deciding load of the pilot (deciding_load()) is too noisy to approach the yield.
@@ -53,7 +54,7 @@ inline constexpr double kBlindShare = 0.7;
 inline constexpr std::size_t kMaxGradientMachines = 3000;
 /// The score of a part (PartScores) is significant if it is larger than this number times its standard deviation.
 inline constexpr double kSignificance = 3.0;
-/// The largest number of steps along the gradient. More steps would fit the noise of the machines (D66).
+/// The largest number of steps along the gradient. More steps would fit the noise of the machines (decision D66).
 inline constexpr std::size_t kMaxGradientSteps = 3;
 /// One step along the gradient solves at most this many optimisation problems, each with a rescaled limit, to find
 /// tolerances that keep the yield.

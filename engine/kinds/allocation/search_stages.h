@@ -134,8 +134,8 @@ struct Probed {
 };
 
 /// Predicts the yield for each part if only this part is coarser. Makes parts coarser if that saves cost and the design
-/// still has no more rejects than it may have. At the least cost there are no such parts, because every coarser part
-/// would break the yield.
+/// still has no more rejects than it may have. At the least cost, no part can be made coarser without breaking the
+/// yield.
 Probed use_remaining_yield(const SearchProblem& problem, ToleranceDesign from, StageLog& log);
 
 /// Rounds tolerances down as the study asks for their parts. If a tolerance changes, tries all machines again.

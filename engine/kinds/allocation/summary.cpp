@@ -11,8 +11,8 @@
 namespace poesy {
 namespace {
 
-/// Rounds down to this many significant digits. A value that is less than a number of so many digits only because of
-/// rounding errors becomes that number.
+/// Rounds down to this many significant digits. If a value is below a number with this many digits only because of
+/// rounding errors, the result is that number.
 double rounded_down(double value, int digits) {
   constexpr double kRounding = 1e-12;
   if (!(value > 0.0) || std::isinf(value)) return value;

@@ -186,7 +186,8 @@ double largest(std::span<const double> at_poses) {
 
 constexpr double kNoticeable = 0.001;  // smallest share of a mean square that tables show
 
-/// Returns true if errors that belong to no part make up at least this share of the mean square of a limited response.
+/// Returns true if causes other than the parts (AllocationResult::fixed_share) make up at least this share of the mean
+/// square of some limited response.
 bool have_fixed_share(const Result& found, double least) {
   return std::ranges::any_of(found.fixed_share.all(), [&](double share) { return share >= least; });
 }
@@ -380,7 +381,8 @@ void append_curves(const Result& found, std::vector<Table>& tables) {
   }
   if (!found.curve_factor.empty()) {
     Table table{.name = "cost_of_limits", .caption = "What other limits would cost", .columns = {}};
-    constexpr double kConsiderable = 0.05;  // other limits then change the distribution of the response noticeably
+    // With a larger AllocationResult::fixed_share, other limits change the distribution of the response noticeably.
+    constexpr double kConsiderable = 0.05;
     if (have_fixed_share(found, kConsiderable)) {
       table.notes.emplace_back(
           "errors that are in no part keep their size, so far from the study's limits these costs may be off by a "

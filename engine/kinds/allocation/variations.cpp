@@ -18,8 +18,8 @@ namespace {
 /// many variations.
 constexpr std::size_t kVariedAtOnce = 40;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// From experience, about one pose in this many decides for a machine (kDeciding). Used to estimate how many solves
-/// remain.
+/// From experience, about one pose in this many decides for a machine (kDeciding). The number serves to estimate how
+/// many solves remain.
 constexpr std::size_t kOfPosesDecide = 4;
 
 /// The machines to solve, and the variations with which they are solved. A piece of work solves some of the machines
@@ -125,8 +125,8 @@ class VariationEvaluator : private LoadSolver {
   }
 
   /// Solves machines with variations at pose m. If `deciding` is true, solves the machines for which this pose decides,
-  /// with all variations. Otherwise solves the other machines, but only with variations that have changed some load
-  /// much, because other poses may decide with such variations.
+  /// with all variations. Otherwise solves the other machines, but only with variations that have changed some load by
+  /// more than half of kDeciding, because other poses may decide with these variations.
   void solve_at(std::size_t m, bool deciding, VariedLoads& found) {
     pairs_.clear();
     for (const std::size_t p : draw_per_pose(PoseIndex(m), numbers_)) {

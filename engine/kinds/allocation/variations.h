@@ -24,13 +24,14 @@ struct ErrorFactor {
 using Variation = std::vector<ErrorFactor>;
 
 /// The loads (MachineLoads) [variations x machines] of the listed machines with each variation alone. machines:
-/// ascending numbers below plan.samples(). A machine is solved at the poses that decide, where its load is within
-/// kDeciding of its largest. Machines are solved in groups of about forty. If a variation changes the load of one of
-/// them at these poses by more than half of kDeciding, other poses may decide, and the whole group is solved with this
-/// variation at all poses. Calibrated machines are calibrated anew with each variation, with the same noise and prior
-/// knowledge, and solved at all poses. The result has the same bits for any number of threads and on all ranks. None if
-/// the run was stopped. calibration: as for machine_loads(). Preconditions: the study draws errors per machine; no
-/// variation has an error that machines draw anew at each pose, because such an error is in no part.
+/// ascending numbers below plan.samples(). With a variation, a machine is first solved only at the poses that
+/// decide (kDeciding) without the variation. Machines are solved in groups of at most forty. If a variation changes the
+/// load of a machine at these poses by more than half of kDeciding, other poses may decide, and the whole group is
+/// solved with this variation at all poses. All machines are solved at all poses if they are calibrated, or if a limit
+/// is judged from several poses together. Each variation has its own calibration, with the same noise and prior
+/// knowledge. The result has the same bits for any number of threads and on all ranks. None if the run was stopped.
+/// calibration: as for machine_loads(). Preconditions: the study draws errors per machine; no variation has an error
+/// that machines draw anew at each pose, because such an error is in no part.
 std::optional<std::vector<double>> try_variations(const Plan& plan, const Model& model,
                                                   std::span<const ResponseLimit> limits,
                                                   std::span<const std::uint32_t> machines,

@@ -118,7 +118,7 @@ void check_errors(const StudyValue& value, const ZoneAt& zone, const Study& stud
   check_distributions(value, errors, study);
 }
 
-/// Refuses keys that only distances may have if another zone is in the block.
+/// Refuses keys that only distances may have, if the block has a zone that is not a distance.
 void check_distances(const StudySection& block, const std::vector<ZoneAt>& zones, const ModelDescription& model) {
   for (const std::string_view key : {"shift", "grades", "nominal_size"}) {
     const auto value = block.find(key);

@@ -15,7 +15,7 @@
 /// Zones of a drawing as parts. The mean squares of a feature's errors are linear in the squares of its tolerances. Let
 /// T be the width of the zone of location, T_o that of the zone of orientation, and k the number of standard deviations
 /// in half a zone. With a zone of orientation, each error of the middle has the mean square (T^2 - T_o^2) / (4 k^2),
-/// and that of the tilt is a multiple of T_o^2. Without a zone of orientation, middle and tilt share the zone of
+/// and each error of the tilt has a multiple of T_o^2. Without a zone of orientation, middle and tilt share the zone of
 /// location.
 namespace poesy {
 

@@ -23,8 +23,8 @@ std::vector<FilledColumn> inside_columns(const AllocationResult& found);
 /// not need are left out.
 std::vector<std::size_t> drawn_parts(const AllocationResult& found, const std::vector<std::size_t>& order);
 
-/// The relation between zones and errors in words: "half a zone: 3 standard deviations of a coordinate of an extreme
-/// point".
+/// A note in words: how many standard deviations half a zone is, what the column `inside` shows, and how zones are
+/// rounded.
 std::string zones_note(const AllocationResult& found);
 
 /// The table drawing.csv, with a line for each zone or tolerance of the drawing.

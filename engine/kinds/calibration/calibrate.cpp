@@ -28,7 +28,8 @@ using calibration::Components;
 using calibration::Matrix;
 using calibration::Vector;
 
-// Step of the finite differences for the derivatives of typed parameters, as a share of the scale of a fitted error.
+// Step of the finite differences for the derivatives of the parameters that an operator types into the controller
+// (TypedNumber), as a share of the scale of a fitted error.
 constexpr double kStepOfTyped = 1e-6;
 
 Eigen::Index position(std::size_t at) { return static_cast<Eigen::Index>(at); }
@@ -139,8 +140,8 @@ struct SolverOfThread {
   calibration::DriveCorrection correction;
 };
 
-/// The displacements that remain at one pose after calibration: of the measured machine (none if the pose cannot be
-/// reached), and of the machines by which limits are judged (KeptLimits).
+/// The displacements that remain at one pose after calibration. left: of the measured machine; none if the pose cannot
+/// be reached. machines: [components x machines] of the machines by which limits are judged (KeptLimits), rad and m.
 struct LeftThere {
   std::optional<calibration::LeftAtPose> left;
   Matrix machines;

@@ -36,9 +36,9 @@ struct MachineToCalibrate {
   std::size_t threads = 1;                ///< number of threads; the result is the same for any number
 };
 
-/// The result of a calibration, and what a user must be told about the fit.
+/// The result of a calibration, and information on the fit for the user.
 struct Calibrated {
-  CalibrationResult result;  ///< the result, in which the text and the hash of the table of measurements are not set
+  CalibrationResult result;  ///< the result; the name, the text and the hash of the table of measurements are not set
   bool converged = false;    ///< whether the fit converged
   std::uint64_t solves = 0;  ///< how many times the mechanism was solved
   std::vector<std::string> warnings;  ///< warnings, as sentences for people

@@ -30,8 +30,8 @@ std::vector<std::string> measured_columns(const CalibrationResult& found) {
   return columns;
 }
 
-/// [rows of the table of measurements] The numbers of the values in one column; NaN for rows without a value there.
-/// numbers: a number for each measured value.
+/// [rows of the table of measurements] The elements of `numbers` that belong to the measured values in one column; NaN
+/// for a row without a value in this column. numbers: one number for each measured value.
 std::vector<double> at_rows(const CalibrationResult& found, const std::string& column,
                             const Array<double, axis::Value>& numbers) {
   std::vector<double> list(found.rows.size(), kNaN);

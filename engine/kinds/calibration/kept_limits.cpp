@@ -18,8 +18,8 @@ using calibration::Vector;
 
 constexpr Eigen::Index kMachines = 1000;
 
-/// Indices in kComponents of the components of the platform's displacement that give a response; empty if the response
-/// is not computed from them.
+/// Indices in kComponents of the components of the platform's displacement from which a response is computed; empty if
+/// the response is not a displacement of the platform.
 std::vector<std::size_t> components_of(const ModelDescription& model, std::size_t response) {
   const Response& wanted = model.responses[response];
   std::vector<std::size_t> parts = wanted.components;

@@ -43,7 +43,7 @@ class KeptLimits {
 
   std::vector<Judged> limits_;
   calibration::Matrix errors_;  ///< [all errors x machines] errors, SI
-  calibration::Matrix phi_;     ///< [places x machines] numbers of the measuring device's frame and of the target, SI
+  calibration::Matrix phi_;  ///< [places x machines] numbers that place the measuring device's frame and the target, SI
   std::string not_judged_;
 };
 

@@ -33,8 +33,8 @@ struct CalibrationResult {
   Array<double, axis::Fitted> sd;        ///< standard deviations of the estimates
   Array<double, axis::Fitted> low;       ///< lower ends of the confidence intervals of the estimates
   Array<double, axis::Fitted> high;      ///< upper ends of the confidence intervals of the estimates
-  /// Scale of each fitted error: the standard deviation that follows from the tolerances, or a usual size
-  /// (FittedColumns).
+  /// Scale of each fitted error: the standard deviation that follows from the tolerances; without tolerances, the
+  /// default that FittedColumns states.
   Array<double, axis::Fitted> scale;
   std::uint64_t has_tolerances = 0;                            ///< 1 if all scales follow from tolerances, otherwise 0
   Array<double, axis::Fitted, axis::OtherFitted> covariance;   ///< covariance of the estimates
@@ -88,7 +88,8 @@ struct CalibrationResult {
   double O5 = kNaN;         ///< observability index of Sun and Hollerbach
   double condition = kNaN;  ///< ratio of the largest singular value to the smallest one above rounding
 
-  /// Names of the numbers that place the measuring frame and the target: m, rad, or slopes.
+  /// Names of the numbers that place the measuring frame and the target, such as "height". The numbers are in m or rad;
+  /// slopes have no unit.
   std::vector<std::string> frame_parts;
   Array<double, axis::FramePart> frame;  ///< estimates of the numbers in `frame_parts`
 

@@ -18,7 +18,7 @@ namespace {
 
 // If the p-value is smaller than this, the measurements contradict the fitted errors.
 constexpr double kContradiction = 0.01;
-// Two estimates move together if the magnitude of their correlation is at least this.
+// Two estimates are reported as correlated if the magnitude of their correlation is at least this.
 constexpr double kTogether = 0.95;
 constexpr std::size_t kAngles = 3;  // number of components of a displacement that are angles; they come first
 

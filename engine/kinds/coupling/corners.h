@@ -15,8 +15,8 @@
 #include "engine/run/result.h"
 #include "engine/study/poses/pose_selection.h"
 
-/// Searches the worst case of error sources whose signs are unknown. The errors of a block (error_blocks()) have their
-/// sizes, all with the same sign; a corner is a choice of the sign of each block.
+/// Searches for the worst case of error sources whose signs are unknown. In a block (error_blocks()), each error has
+/// the size that the study states, and all have the same sign; a corner is a choice of the sign of each block.
 namespace poesy {
 
 namespace axis {
@@ -56,9 +56,9 @@ struct CornersAtPose {
   SolveCounts solves;                 ///< how the solves of all corners ended
 };
 
-/// Searches the worst corners. For each response, the search tries the signs with which the effects of single blocks
-/// add up to first order, and the opposite signs. It does the same for sums and differences of responses with a sign
-/// that share a unit (ModelDescription::signed_headline), because a norm may be largest between the axes of its
+/// Searches for the worst corners. For each response, the search tries the signs with which the effects of single
+/// blocks add up to first order, and the opposite signs. It does the same for sums and differences of responses with a
+/// sign that share a unit (ModelDescription::signed_headline), because a norm may be largest between the axes of its
 /// components. It also tries the corner with all signs positive. Then it flips the sign of each single block at the
 /// worst corner so far, until no flip makes the response worse by more than rounding. Only corners that are solved
 /// (model/status.h) count; the others cannot be assembled, or their solution was not found. The result is not a bound:
@@ -70,7 +70,7 @@ class CornerSearch {
   CornerSearch(const Model& model, const SolverOptions& solver, const PoseSet& poses, const CornerTable& table,
                const Array<double, axis::Response, axis::Size>& rounding);
 
-  /// Searches all subsets at this pose and size.
+  /// Searches for the worst corners of all subsets at this pose and size.
   CornersAtPose operator()(std::size_t pose, std::size_t size);
 
  private:

@@ -183,7 +183,7 @@ class Composer {
   std::size_t rows() const { return rows_.errors.size(); }
   std::size_t sample(std::size_t z, std::size_t n) const { return z * rows() + n; }
 
-  /// The effects of all sets of errors on response r at size z; NaN if a solve does not count.
+  /// The effects of all sets of errors on response r at size z; NaN if a solve does not count in statistics (counts()).
   Effects effects_of(std::size_t r, std::size_t z) const {
     Effects effects({evaluation_.poses(), rows()});
     for (std::size_t m = 0; m < evaluation_.poses(); ++m) {

@@ -53,7 +53,7 @@ struct CouplingStudy {
   std::vector<double> angular;       ///< [sizes] sizes of errors that are angles, rad; empty if no error is an angle
   ErrorPattern pattern;              ///< which errors of each source are not zero, and which have the same sign
   std::vector<ErrorSource> sources;  ///< the sources; an error is in one source only
-  UnknownSigns worst_case = UnknownSigns::search;  ///< whether worst cases are searched
+  UnknownSigns worst_case = UnknownSigns::search;  ///< whether the study searches for worst cases
 
   /// The sizes of errors of this dimension, a length or an angle.
   const std::vector<double>& sizes_of(Dimension dimension) const {
@@ -96,7 +96,8 @@ CouplingRows coupling_rows(const CouplingStudy& study, const ModelDescription& m
 std::vector<FactorIndex> coupling_factors(const CouplingStudy& study, const ModelDescription& model);
 
 /// The table of errors that is solved at every pose. Its rows are all rows of CouplingRows at the first size, then all
-/// at the second size, and so on; all errors are positive. The columns are coupling_factors().
+/// at the second size, and so on. The errors of a row have their sizes, with positive sign; all others are 0. The
+/// columns are coupling_factors().
 ErrorTable coupling_table(const CouplingStudy& study, const ModelDescription& model);
 
 namespace axis {
@@ -106,7 +107,7 @@ using Subset = Axis<"subset">;  ///< Subsets of the sources, whose errors act to
 }  // namespace axis
 
 /// The effects of error sources alone and together, SI. coupling_result() defines each number. A number is NaN if it
-/// depends on a solve that does not count.
+/// depends on a solve that does not count in statistics (counts()).
 struct CouplingResult {
   /// A number for each response, size, subset of the sources and pose.
   using Curves = Array<double, axis::Response, axis::Size, axis::Subset, axis::Pose>;
@@ -163,7 +164,7 @@ struct CouplingResult {
   SolveCounts total() const { return total_of(solves.all()); }
 };
 
-/// Whether worst cases were searched. Studies with UnknownSigns::sum, and results of version 0.2.0, have only
+/// Whether the study searched for worst cases. Studies with UnknownSigns::sum, and results of version 0.2.0, have only
 /// first-order sums.
 inline bool has_worst_cases(const CouplingResult& found) { return !found.worst_case.empty(); }
 
@@ -181,9 +182,10 @@ inline bool has_worst_cases(const CouplingResult& found) { return !found.worst_c
 ///                      another or if no more than rounding is cancelled, 1 if they cancel
 ///
 /// To first order, first_order_sum is the largest effect of the blocks if their signs are unknown, and root_sum_square
-/// is the root mean square effect if both signs of each block are equally likely. Neither first_order_sum nor
-/// worst_case is a bound. A norm has no sign, so it cannot show that sources oppose each other. For a norm, to first
-/// order, sum and first_order_sum are upper bounds, interaction is at most zero, and cancellation is 0.
+/// is the root mean square effect if the signs of the blocks are independent and equally likely. Neither
+/// first_order_sum nor worst_case is a bound. A norm has no sign, so it cannot show that sources oppose each other. For
+/// a norm, to first order, sum and first_order_sum are upper bounds, interaction is at most zero, and cancellation is
+/// 0.
 ///
 /// Summaries are over the poses at which all these numbers are known. Sources oppose each other (opposed_share) at a
 /// pose if together they have less effect than one of them alone: |sum| is below the largest |effect of a source in S|

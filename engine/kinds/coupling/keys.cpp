@@ -100,8 +100,8 @@ ErrorSource read_source(const StudySection& section, std::span<const ErrorSource
   return source;
 }
 
-/// The error sources that the model lists from the literature. Throws InputError if it lists none, or if the pattern
-/// excludes all errors of one.
+/// The error sources that the model lists, for a study that names none. Throws InputError if the model lists none, or
+/// if the pattern excludes all errors of a source.
 std::vector<ErrorSource> usual_sources(const StudySection& analysis, const ModelDescription& model,
                                        const ErrorPattern& pattern) {
   constexpr std::string_view kNameThem =
@@ -226,8 +226,8 @@ void require_sizes(const StudySection& analysis, Dimension dimension, const Coup
                    "write sizes, e.g. " + key + " = [\"0.1 " + std::string(display_unit(dimension).name) + "\"]");
 }
 
-/// Refuses sizes of a dimension (lengths or angles) if no error of the sources has this dimension. Errors that the
-/// pattern leaves at zero count as well.
+/// Refuses sizes of a dimension (lengths or angles) if no error of the sources has this dimension. Also considers
+/// errors that the pattern leaves at zero.
 void refuse_idle_sizes(const StudySection& analysis, Dimension dimension, const CouplingStudy& study,
                        const ModelDescription& model) {
   const auto value = analysis.find(error_kind(dimension));
@@ -248,8 +248,8 @@ void require_equal_numbers(const StudyValue& angular, const CouplingStudy& study
                "a run takes one of each, so write as many");
 }
 
-/// Throws InputError if two runs have equal sizes of lengths and equal sizes of angles. value: the key `linear` or
-/// `angular`, to which the message points.
+/// Throws InputError if the sizes at two positions of the lists `linear` and `angular` are equal, for lengths as well
+/// as for angles. value: the key `linear` or `angular`, to which the message points.
 void require_different_runs(const StudyValue& value, const CouplingStudy& study) {
   const auto same = [](const std::vector<double>& sizes, std::size_t a, std::size_t b) {
     return sizes.empty() || sizes[a] == sizes[b];

@@ -56,8 +56,8 @@ std::string corner_text(const StoredResult& result, std::span<const std::int64_t
   return some_names(names, kMost);
 }
 
-/// A text on the worst case of all sources together, with its pose and the signs of the errors; empty if there is none
-/// or if it is rounding.
+/// A text on the worst case of all sources together, with its pose and the signs of the errors; empty if no worst case
+/// was found, or if it is only rounding.
 std::string worst_corner_text(const StoredResult& result, std::size_t z, std::size_t r) {
   const CouplingResult& found = coupling_of(result);
   const std::size_t all = found.subsets.size() - 1;

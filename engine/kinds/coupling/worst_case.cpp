@@ -115,7 +115,7 @@ struct CornerSums : WorstCases {
       for (std::size_t r = 0; r < value.length<axis::Response>(); ++r) archive.real(value(r, z, k, m));
     }
   }
-  /// Reads or writes a corner and its pose. In reading, take(place, read) merges the corner that was read, which
+  /// Reads or writes a corner and its pose. When reading, take(place, read) merges the corner that was read, which
   /// belongs to later units, into `place`.
   template <class Take>
   void places_state(Archive& archive, std::size_t subset, Place& place, const Take& take) {

@@ -29,7 +29,7 @@ struct WorstCases {
   Array<Place, axis::Size, axis::Subset> first_unsolved;  ///< first corner that was not solved, over the poses
 };
 
-/// Searches the worst corners (choices of the sign of each block of errors) at every size and pose (CornerSearch).
+/// Searches for the worst corners (choices of the sign of each block of errors) at every size and pose (CornerSearch).
 /// rounding: see coupling_rounding(). Returns nothing if the run was stopped, and for a shard.
 std::optional<WorstCases> run_worst_cases(const StudyRun& run, const CornerTable& table,
                                           const Array<double, axis::Response, axis::Size>& rounding,

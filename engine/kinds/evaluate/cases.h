@@ -56,11 +56,11 @@ struct Evaluation {
   /// [rows] 1: the row is within all limits; 0: it is not. Empty if the study states no limits.
   std::vector<std::uint8_t> within_limits;
   std::vector<std::string> cases;  ///< names of the cases; empty if the errors are rows of a table
-  /// Mean of a response over the poses whose solves enter statistics (counts()); NaN if there are none.
+  /// Mean of a response over the poses whose solves count in statistics (counts()); NaN if there are none.
   OverPoses<double> mean;
-  /// Value of a response with the largest magnitude over these poses; NaN if there are none.
+  /// Value of a response with the largest magnitude over the poses of `mean`; NaN if there are none.
   OverPoses<double> extreme;
-  OverPoses<std::uint64_t> count;  ///< number of these poses
+  OverPoses<std::uint64_t> count;  ///< number of the poses of `mean`
 };
 
 /// The errors of named cases as a table: a row for each case, a column for each of the model's factors.

@@ -56,11 +56,11 @@ struct IdentificationResult {
   /// Largest deformation, SI, by the error alone over the solved poses; NaN if none is solved.
   ByGroup<double> single_max;
   ByGroup<std::uint64_t> not_solved;  ///< number of poses without a solution for the error alone
-  /// The coupled stage tries the errors of a frame together, without those that deform the mechanism alone: number of
-  /// poses at which they cause no deformation beyond rounding; 0 if they were not tried.
+  /// Number of poses at which the errors tried together in the coupled stage (those of this error's frame that do not
+  /// deform the mechanism alone) cause no deformation beyond rounding; 0 if they were not tried.
   ByGroup<std::uint64_t> coupled_below;
-  /// Number of poses at which the deformation by these errors together falls to a tenth or less if this error is set to
-  /// zero.
+  /// Number of poses at which the deformation by the errors of `coupled_below` together falls to a tenth or less if
+  /// this error is set to zero.
   ByGroup<std::uint64_t> coupled_reduced;
   /// 1 if the error alone deforms the mechanism, otherwise 0.
   ByGroup<std::uint8_t> single_by_group;
@@ -90,10 +90,10 @@ using SolveTable = std::function<std::optional<EvaluationResult>(const ErrorTabl
 /// that there is no deformation.
 ///
 /// Coupled stage: for each frame of a limb, all errors that do not deform the mechanism alone are tried together. If
-/// they deform it, all pairs of them are tried. A pair that deforms it is a coupling. Of a coupling, the angular error
-/// gets the verdict, or both errors if they have the same dimension. If no pair deforms the mechanism, all errors that
-/// take part get the verdict. An error takes part if setting it to zero removes nine tenths of the deformation at
-/// `pose_share` of the poses.
+/// they deform it, all pairs of them are tried. A pair that deforms it is a coupling. In a coupling, the angular error
+/// is recorded as deforming the mechanism (`coupled_by_group`), or both errors if they have the same dimension. If no
+/// pair deforms the mechanism, all errors that take part are recorded. An error takes part if setting it to zero
+/// removes nine tenths of the deformation at `pose_share` of the poses.
 ///
 /// Precondition: the model has a measure of deformation.
 std::optional<IdentificationResult> identify(const Analysis& analysis, const ModelDescription& model,

@@ -19,7 +19,7 @@ namespace poesy {
 
 /// The statistics of one response over some samples.
 struct ResponseSamples {
-  Moments moments;        ///< mean and standard deviation, more exact than those of the sketch
+  Moments moments;        ///< mean and standard deviation, more exact than those of the quantile sketch
   QuantileSketch sketch;  ///< approximate distribution of the samples, for quantiles
 
   void state(Archive& archive) { archive.objects(moments, sketch); }  ///< Reads or writes the statistics.
@@ -46,18 +46,18 @@ struct PoseSamples {
 /// when all its samples are merged. PoseFold (run/pose_fold.h) adds the units to an object of this class. Quantile
 /// sketches are in memory only for the pose that is being merged, and for each response over all finished poses. So
 /// memory does not depend on the number of samples, and each finished pose takes only a few numbers. For a later study
-/// with more samples, packed sketches of finished poses are kept as well, up to kMostKeptBytes. The result does not
-/// depend on the order in which poses are finished.
+/// with more samples, packed quantile sketches of finished poses are kept as well, up to kMostKeptBytes. The result
+/// does not depend on the order in which poses are finished.
 class MonteCarloCollector {
  public:
-  /// The largest number of bytes of packed sketches that are kept for a later study with more samples. If the sketches
-  /// of a pose no longer fit, that study solves the pose again from its first sample.
+  /// The largest number of bytes of packed quantile sketches that are kept for a later study with more samples. If the
+  /// sketches of a pose no longer fit, that study solves the pose again from its first sample.
   static constexpr std::size_t kMostKeptBytes = std::size_t{64} << 20U;
-  /// True: PoseFold makes the sums anew for each round of adaptive sampling, because a finished pose takes no more
+  /// Tells PoseFold to make new sums for each round of adaptive sampling, because a finished pose takes no more
   /// samples.
   static constexpr bool kOfRound = true;
 
-  /// Keeps a reference to the plan. keep_checkpoint: whether to keep packed sketches of finished poses.
+  /// Keeps a reference to the plan. keep_checkpoint: whether to keep packed quantile sketches of finished poses.
   MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis, bool keep_checkpoint = true);
 
   /// Adds a unit. Precondition: no pose is begun before all units of the previous pose are added.
@@ -73,7 +73,7 @@ class MonteCarloCollector {
 
   /// Writes the statistics of all poses; or reads those that a study with `samples` samples at each pose wrote, and
   /// adds them. If this study has more samples, the poses that are read are unfinished, and continue from their packed
-  /// sketches.
+  /// quantile sketches.
   void state(Archive& archive, std::size_t samples);
 
  private:
@@ -106,7 +106,7 @@ class MonteCarloCollector {
   bool keep_checkpoint_;
   PoseIndex open_;                                      ///< the open pose: the one whose units are being added
   PoseSamples at_pose_;                                 ///< statistics of the open pose; no samples if no pose is open
-  std::vector<QuantileSketch> sketches_;                ///< [responses] sketch over all finished poses
+  std::vector<QuantileSketch> sketches_;                ///< [responses] quantile sketch over all finished poses
   Array<Moments, axis::Pose, axis::Response> moments_;  ///< moments at the finished poses
   MonteCarloColumns columns_;                           ///< result at the finished poses
   /// [poses] Sums for main effects; set for a finished pose at which they are computed.

@@ -24,7 +24,8 @@ RankInterval among(const RankInterval& ranks, std::uint64_t trials, std::uint64_
   return {static_cast<std::uint64_t>(low), ranks.high > trials ? count + 1 : static_cast<std::uint64_t>(high)};
 }
 
-/// The number of samples within a limit. All samples of a bucket of the sketch count as the middle of the bucket.
+/// The number of samples within a limit. Each sample in a bucket of the quantile sketch is taken to have the value in
+/// the middle of the bucket.
 std::uint64_t count_within(const QuantileSketch& samples, const ValueLimit& limit) {
   std::uint64_t within = 0;
   for (const Bucket& bucket : samples.buckets()) {

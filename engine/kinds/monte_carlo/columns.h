@@ -28,9 +28,10 @@ class MonteCarloColumns {
   /// Sets the extremes and quantiles of a response at a pose, and share_magnitude for Judge::share. tried: the number
   /// of all samples at the pose, including samples that do not count in statistics (counts() in run/result.h).
   void set_quantiles(std::size_t response, std::size_t pose, const QuantileSketch& sketch, std::uint64_t tried);
-  /// Sets the numbers of a response over all poses. independent: the number of independent samples: of all samples that
-  /// count if errors are drawn per pose, of machines if they are drawn per machine. In the second case, the intervals
-  /// of quantiles assume that the samples of a machine are equal at all poses, so they are never too narrow.
+  /// Sets the numbers of a response over all poses. independent: the number of independent samples, which is the number
+  /// of samples that count in statistics if errors are drawn per pose, and the number of machines if errors are drawn
+  /// per machine. With draws per machine, the intervals of quantiles assume that the samples of a machine are equal at
+  /// all poses, so they are never too narrow.
   void set_overall(std::size_t response, const Moments& moments, const QuantileSketch& sketch,
                    std::uint64_t independent);
 
@@ -62,8 +63,8 @@ struct QuantilesOf {
 /// beyond every limit: infinite for a limit on magnitudes, otherwise NaN.
 double value_at_rank(const QuantileSketch& values, const ValueLimit& limit, std::uint64_t rank);
 
-/// Computes quantiles from a sketch. buckets: the filled buckets of the sketch. levels: [quantiles] the share of the
-/// samples below each quantile. ranks: [quantiles] the ranks of both ends of its interval.
+/// Computes quantiles from a quantile sketch. buckets: the filled buckets of the sketch. levels: [quantiles] the share
+/// of the samples below each quantile. ranks: [quantiles] the ranks of both ends of its interval.
 QuantilesOf quantiles_of(std::span<const Bucket> buckets, std::span<const double> levels,
                          std::span<const RankInterval> ranks);
 
@@ -75,10 +76,12 @@ inline constexpr std::size_t kHistogramBins = 128;
 void fill_histogram(std::span<const Bucket> buckets, std::span<double> edges, std::span<std::uint64_t> counts);
 
 /// Judges the limits of a Monte Carlo study by its result. A limit is kept
-/// - for Judge::rms, if the root mean square of the response over the counted samples of all poses is within it;
+/// - for Judge::rms, if the root mean square of the response over the samples of all poses that count in statistics
+/// (counts()) is within it;
 /// - for Judge::share, if at each pose at least the share `share` of all draws is within it, which follows from the
-/// worst share_magnitude over the poses. A draw that does not count is not within the limit.
-/// overall: [responses] sketch of the counted samples of all poses. Preconditions: judge is rms or share;
+/// worst share_magnitude over the poses. A draw that does not count in statistics is not within the limit.
+///
+/// overall: [responses] quantile sketch of the samples of all poses that count. Preconditions: judge is rms or share;
 /// found.overall_rms is set, and for Judge::share also found.share_magnitude; no limit is over several poses
 /// (ValueLimit::is_over_poses); for Judge::rms, all limits are on magnitudes.
 LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, double share,

@@ -13,8 +13,7 @@ namespace {
 
 constexpr double kFar = 30.0;
 
-/// The distance from zero of that end of a limit which is farther from zero; of the other end if that distance is
-/// infinite.
+/// The magnitude of the end of a limit that is farther from zero, or of the other end if that one is infinite.
 double size_of(const ValueLimit& limit) {
   const double from = std::abs(limit.from());
   const double to = std::abs(limit.to());

@@ -11,8 +11,8 @@ namespace poesy {
 
 /// Runs a Monte Carlo study on a pool of threads. The result has the same bits for any number of threads, and also if
 /// it continues from checkpoints. Memory hardly grows with the number of samples (see MonteCarloCollector and
-/// MachineCollector). analysis: that of the plan's study. calibration: that of the machines; null: machines are not
-/// calibrated. Returns nothing if the run was stopped, and for a shard.
+/// MachineCollector). analysis: the analysis options of the plan's study. calibration: how the machines are calibrated;
+/// null: they are not. Returns nothing if the run was stopped, and for a shard.
 std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,
                                                 const RunOptions& options,
                                                 const MachineCalibration* calibration = nullptr);

@@ -25,8 +25,8 @@ class MachineCollector {
   MachineCollector(const MachineTable& table, const Analysis& analysis);
 
   void add(std::size_t n, MachineUnit&& unit);  ///< Adds unit n. Precondition: it is the next one.
-  /// [responses] The mean of each response over the samples of all poses, with its interval. Only machines that are
-  /// solved at every pose count. The interval assumes that machines are independent.
+  /// [responses] The mean of each response over the samples of all poses, with its interval. Machines that are not
+  /// solved at every pose are left out. The interval assumes that machines are independent.
   std::vector<Estimate> overall_means() const;
   /// The result of all machines that were added. Precondition: no units are added afterwards.
   MonteCarloResult result() &&;
@@ -35,7 +35,8 @@ class MachineCollector {
   void state(Archive& archive, const NumberRange& units);
 
  private:
-  /// Counts, sketches and lists over machines. Unlike MachineSums they have no rounding, so they need no MergeTree.
+  /// Counts, quantile sketches and lists over machines. Unlike MachineSums they have no rounding, so they need no
+  /// MergeTree.
   struct Counts {
     Array<QuantileSketch, axis::Pose, axis::Response> at_pose;
     std::vector<QuantileSketch> largest;  ///< [responses] largest magnitude of each machine
@@ -58,7 +59,7 @@ class MachineCollector {
   };
 
   std::size_t poses() const { return table_->plan().poses().size(); }
-  /// Sets the numbers of a result that follow from the moments and sketches of the samples.
+  /// Sets the numbers of a result that follow from the moments and quantile sketches of the samples.
   void set_columns(const MachineSums& sums, MonteCarloResult& found, class MonteCarloColumns& columns) const;
   /// [responses] The values by which machines are judged: the largest magnitude of each machine, or
   /// ValueLimit::deciding() if the limit is not on the magnitude at each pose.

@@ -13,7 +13,8 @@ namespace {
 
 const Axes kByEffectPose{"effect_pose"};
 
-/// The end of descriptions of numbers over machines. Machines that are not solved at every pose are left out of them.
+/// The last words in the descriptions of statistics over machines, which leave out machines that are not solved at
+/// every pose.
 const std::string kOfSolved = " over the machines that are solved at every pose";
 
 /// The fields with the distribution over the machines of a number that each machine has. what: this number, such as

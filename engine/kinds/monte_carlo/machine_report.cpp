@@ -88,7 +88,8 @@ bool has_correlated(const StoredResult& result) {
   return result.study_text.find("\n[[errors.correlated]]\n") != std::string::npos;
 }
 
-/// Whether too few samples of the response count at a pose over which indices are summed.
+/// Whether the response has too few samples that count in statistics (counts()) at a pose over which indices are
+/// summed.
 bool has_too_few_samples(const StoredResult& result, std::size_t r) {
   const MonteCarloResult& found = monte_carlo_of(result);
   return std::ranges::any_of(found.effects.s1_poses,

@@ -18,7 +18,7 @@ namespace poesy {
 
 /// How many machines a unit of work has.
 enum class UnitSize {
-  usual,      ///< many; fewer if there are many poses, because memory grows with machines times poses
+  usual,      ///< up to 1000; fewer if there are many poses, because memory grows with machines times poses
   calibrated  ///< few, because calibrated machines take much longer to solve
 };
 
@@ -32,7 +32,8 @@ class MachineTable {
                const MachineCalibration* calibration = nullptr, bool keep_all = false);
 
   /// The number of machines in a unit; it divides Plan::kUnitSamples. It is smaller for a larger number of poses,
-  /// because the memory of a unit grows with both, but large enough for solvers that solve a batch at once.
+  /// because the memory of a unit grows with the number of machines times poses, but large enough for solvers that
+  /// solve a batch at once.
   static std::size_t unit_machines(std::size_t poses, UnitSize size = UnitSize::usual);
   /// The number of units for this many machines. The last unit may be smaller.
   static std::size_t units_for(std::size_t machines, std::size_t poses, UnitSize size = UnitSize::usual);

@@ -26,7 +26,7 @@ namespace poesy {
 
 /// Sums over machines. Their rounding depends on the order of addition, so MergeTree adds them in a fixed order.
 struct MachineSums {
-  Array<Moments, axis::Pose, axis::Response> at_pose;  ///< moments of the samples that count
+  Array<Moments, axis::Pose, axis::Response> at_pose;  ///< moments of the samples that count in statistics (counts())
   std::vector<Moments> mean;                           ///< [responses] moments of the machines' means over the poses
   std::vector<Moments> largest;                        ///< [responses] moments of the machines' largest magnitudes
   std::vector<Moments> rms;                            ///< [responses] moments of the machines' root mean squares
@@ -88,7 +88,8 @@ struct MachineUnit {
   std::optional<MachineSums> sums;  ///< empty only in a default-constructed unit
   MachineCounts counts;             ///< numbers of good and rejected machines
   CalibrationCounts calibration;    ///< counts for calibrated machines; 0 if machines are not calibrated
-  Array<NumberBlock, axis::Pose, axis::Response> at_pose;  ///< the samples that count, prepared for a quantile sketch
+  /// The samples that count in statistics (counts()), prepared for a quantile sketch.
+  Array<NumberBlock, axis::Pose, axis::Response> at_pose;
   std::vector<NumberBlock> largest;    ///< [responses] largest magnitude of each machine that is solved at every pose
   std::vector<NumberBlock> rms;        ///< [responses] root mean square of each machine that is solved at every pose
   std::vector<NumberBlock> judged;     ///< value by which each machine is judged, for each response
@@ -139,20 +140,21 @@ class MachineUnitEvaluator : private UnitSolver {
   /// Adds the machines of the present unit to the fit of the limited vectors, whose components at all poses are in
   /// `rows_`. solved: [machines] 1 if the machine is solved at every pose, otherwise 0.
   void add_fit(std::span<const std::uint8_t> solved, MachineUnit& found) const;
-  /// Adds the samples at one pose to the fit of that pose. ok: [machines] 1 if the sample counts, otherwise 0.
+  /// Adds the samples at one pose to the fit of that pose. ok: [machines] 1 if the sample counts in statistics,
+  /// otherwise 0.
   void add_fit_at(std::size_t pose, std::span<const std::uint8_t> ok, MachineUnit& found) const;
   /// The values for which `counts` is 1.
   std::span<const double> only(std::span<const double> values, std::span<const std::uint8_t> counts);
 
   const MachineTable* table_;
   std::unique_ptr<MachineCalibrator> calibrator_;  ///< null: machines are not calibrated
-  /// Evaluator of machines after the best correction at each pose; null: the model has none.
+  /// Evaluator of machines after the best correction at each pose; null: the model cannot compute this correction.
   std::unique_ptr<Evaluator> best_;
   std::unique_ptr<Evaluator> calibrated_;  ///< evaluator of the calibrated machines of the present unit
-  /// [machines] 1 if the sample of the machine at the present pose counts, otherwise 0.
+  /// [machines] 1 if the sample of the machine at the present pose counts in statistics (counts()), otherwise 0.
   std::vector<std::uint8_t> counts_;
   Array<double, axis::Response, axis::Sample> sum_;  ///< sums of the machines' responses over the poses
-  std::vector<double> kept_;                         ///< values of one response that count, see only()
+  std::vector<double> kept_;                         ///< values of one response in the samples that count, see only()
   bool is_fitted_ = false;                           ///< whether the linear map is fitted to the present unit
   /// Additional outputs of the model at the present pose, if a limited vector is computed from them.
   Array<double, axis::DetailComponent, axis::Sample> details_;

@@ -21,8 +21,8 @@
 namespace poesy {
 namespace {
 
-/// The additional memory with draws per machine: a sketch of each response at each pose, the sums in the nodes of the
-/// merge tree, and the units that are being solved.
+/// The additional memory with draws per machine: a quantile sketch of each response at each pose, the sums in the nodes
+/// of the merge tree, and the units that are being solved.
 MemoryOutlook machine_memory(const Study& study, const Model& model, const Plan& plan) {
   constexpr std::size_t kSketch = 20'000;
   constexpr std::size_t kPackedSketch = 6000;
@@ -45,8 +45,8 @@ MemoryOutlook sum_of(const MemoryOutlook& a, const MemoryOutlook& b) {
 
 MemoryOutlook monte_carlo_memory(const Study& study, const Model& model, const Plan& plan) {
   const std::size_t responses = study.model().responses.size();
-  // Numbers that are computed from the sketch of a response at a pose: quantiles with both ends of their intervals, and
-  // for Judge::share the share_magnitude.
+  // Numbers that are computed from the quantile sketch of a response at a pose: quantiles with both ends of their
+  // intervals, and for Judge::share the share_magnitude.
   const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
   const std::size_t of_sketch = 3 * asked.quantiles.size() + (asked.judge == Judge::share ? 1 : 0);
   const MemoryOutlook of_pose{responses * sizeof(Moments) + sizeof(FailedSamples) + sizeof(SolveCounts) + sizeof(Bytes),
@@ -224,7 +224,7 @@ class MachineTrial {
   MachineTable unit_table_;  ///< the machines of one unit of the study
   MachineUnitEvaluator evaluate_;
   MachineUnit unit_;
-  std::vector<QuantileSketch> sketches_;  ///< sketch of each response at one pose
+  std::vector<QuantileSketch> sketches_;  ///< quantile sketch of each response at one pose
   std::optional<MachineCollector> collect_;
   std::size_t next_ = 0;  ///< number of the next unit to merge
 };

@@ -139,9 +139,9 @@ void add_density(const SmoothedValues& parts, double x, std::span<double> influe
   for (std::size_t i = 0; i < n; ++i) influence[i] += static_cast<double>(n) * own(i) / sum - 1.0;
 }
 
-/// Adds to `influence` [parts] those terms of the derivative of the logarithm of the joint density of correlated errors
-/// x [errors], with respect to the weight of each part, that add_density() leaves out: the terms from the normal scores
-/// of the errors, which depend on the share of the parts below x, and from the correlations of the scores.
+/// Adds to `influence` [parts] the terms of d ln f / dw_i that add_density() leaves out, where f is the joint density
+/// of the correlated errors x [errors] and w_i the weight of part i. These terms come from the normal scores of the
+/// errors, which depend on the share of the parts below x, and from the correlations of the scores.
 void add_scores(const PartGroup& group, std::span<const double> x, std::span<double> influence) {
   const std::size_t size = group.errors.size();
   const std::size_t n = group.size();

@@ -30,8 +30,9 @@ class PartSums {
   static constexpr std::uint64_t kLeast = 10;
 
   /// The confidence interval of the yield, which includes the uncertainty from few machines and from few parts:
-  /// Student's interval on the scale of normal scores. Both ends are NaN with fewer than kLeast rejects or good
-  /// machines, or if the influence of parts cannot be computed (PartGroups::known). Precondition: 0 < conf_level < 1.
+  /// Student's interval of the normal quantile at the yield, converted back to shares. Both ends are NaN with fewer
+  /// than kLeast rejects or good machines, or if the influence of parts cannot be computed (PartGroups::known).
+  /// Precondition: 0 < conf_level < 1.
   Interval interval(double conf_level) const;
 
   void state(Archive& archive);  ///< Reads or writes the sums, bit for bit.

@@ -192,7 +192,7 @@ struct MonteCarloResult {
   AtPoses std;                                             ///< sample standard deviation
   AtPoses min;                                             ///< smallest sample
   AtPoses max;                                             ///< largest sample
-  Array<std::uint64_t, axis::Response, axis::Pose> count;  ///< number of samples that count
+  Array<std::uint64_t, axis::Response, axis::Pose> count;  ///< number of samples that count in statistics
   QuantilesAtPoses quantiles;                              ///< quantiles, as order statistics
   AtPoses rms;                                             ///< root mean square
   /// Lower ends of the quantiles' intervals (stats/buckets.h). An end is infinite if there are too few samples for it.
@@ -201,19 +201,21 @@ struct MonteCarloResult {
   /// Bound on |quantile - order statistic| for all quantiles at the pose; empty in results of version 0.2.
   AtPoses quantile_error;
   /// For Judge::share, the magnitude that the asked share of the draws does not exceed; otherwise empty. A draw that
-  /// does not count exceeds every magnitude, so the value is infinite if too many do not count. For a limit that is not
-  /// on magnitudes: the worst value within that share (value_at_rank), or NaN if too many draws do not count.
+  /// does not count in statistics (counts()) is taken to exceed every magnitude, so the value is infinite if there are
+  /// too many of them. For a limit that is not on magnitudes: the worst value within that share (value_at_rank), or NaN
+  /// if too many draws do not count.
   AtPoses share_magnitude;
 
-  Overall overall_mean;                                ///< mean over the samples of all poses
-  Overall overall_std;                                 ///< sample standard deviation over all poses
-  Overall overall_min;                                 ///< smallest sample of all poses
-  Overall overall_max;                                 ///< largest sample of all poses
-  Array<std::uint64_t, axis::Response> overall_count;  ///< number of samples that count, at all poses together
-  OverallQuantiles overall_quantiles;                  ///< quantiles over all poses
-  Overall overall_rms;                                 ///< root mean square over all poses
-  OverallQuantiles overall_quantiles_ci_low;           ///< lower ends of the intervals of overall quantiles
-  OverallQuantiles overall_quantiles_ci_high;          ///< upper ends of the intervals of overall quantiles
+  Overall overall_mean;  ///< mean over the samples of all poses
+  Overall overall_std;   ///< sample standard deviation over all poses
+  Overall overall_min;   ///< smallest sample of all poses
+  Overall overall_max;   ///< largest sample of all poses
+  /// Number of samples that count in statistics (counts()), at all poses together.
+  Array<std::uint64_t, axis::Response> overall_count;
+  OverallQuantiles overall_quantiles;          ///< quantiles over all poses
+  Overall overall_rms;                         ///< root mean square over all poses
+  OverallQuantiles overall_quantiles_ci_low;   ///< lower ends of the intervals of overall quantiles
+  OverallQuantiles overall_quantiles_ci_high;  ///< upper ends of the intervals of overall quantiles
   Overall overall_quantile_error;  ///< bound on |quantile - order statistic| for all quantiles over all poses; empty in
                                    ///< results of version 0.2
   /// Edges of the bins in a histogram of the samples of all poses (stats/buckets.h).

@@ -25,7 +25,7 @@ void set_estimate(const Estimate& estimate, Values& value, Values& low, Values& 
 }
 
 /// The distribution over the machines of a number that each machine has, such as its largest magnitude. moments,
-/// sketches: [responses] moments and sketch of this number over the machines that are solved at every pose.
+/// sketches: [responses] moments and quantile sketch of this number over the machines that are solved at every pose.
 MachineValues machine_values(std::span<const Moments> moments, std::span<const QuantileSketch> sketches,
                              const Analysis& analysis);
 

@@ -114,8 +114,8 @@ void set_shares(const MachineTable& table, const LinearFit& fit, double conf_lev
 /// Whether the linear map judges only few machines wrongly as good or rejected. If it misjudges many, the correction by
 /// a score of low degree is not good enough.
 bool judges_well(const MappedGradient& gradient, std::span<const std::uint8_t> rejected) {
-  constexpr double kMost = 0.3;  // largest number of misjudged machines, as a share of the rejects, or of the good
-                                 // machines if there are fewer of these
+  constexpr double kMost = 0.3;  // number of misjudged machines that is allowed in addition to kAnyway, as a share of
+                                 // the rejects, or of the good machines if there are fewer of these
   constexpr double kAnyway = 4.0;
   const auto rejects = static_cast<double>(std::ranges::count(rejected, 1));
   const double fewer = std::min(rejects, static_cast<double>(rejected.size()) - rejects);

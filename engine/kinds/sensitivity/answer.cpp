@@ -59,8 +59,8 @@ bool are_copies(std::string_view a, std::string_view b) {
   return a != b && has_number(a) && has_number(b) && stem_of(a) == stem_of(b);
 }
 
-/// The errors that a list with the error `last` should contain as well: its copies in other limbs, errors whose effects
-/// cannot be distinguished from these, and the copies of all these errors.
+/// The errors that a list with the error `last` should contain as well: its copies in other limbs, the errors whose
+/// effects cannot be distinguished from those of `last` and its copies, and the copies of all these errors.
 class Family {
  public:
   /// among: positions of the errors that may belong to the family.
@@ -176,7 +176,8 @@ std::string sure_text(const StoredResult& result, const RankedErrors& ranked) {
 struct Measures {
   std::vector<std::string> calibrate;  ///< errors whose effect calibration can remove almost completely
   std::vector<std::string> hold;       ///< errors that need tight tolerances
-  double removable = 1.0;  ///< smallest share of its effect that calibration can remove from an error in `calibrate`
+  double removable = 1.0;  ///< share of its effect that calibration can remove, for the error in `calibrate` for which
+                           ///< this share is smallest
 };
 
 /// Returns true if the indices describe the deviations that remain after a calibration.

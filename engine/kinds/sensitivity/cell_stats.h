@@ -13,9 +13,10 @@ namespace poesy {
 /// Statistics of the samples in consecutive cells. A cell is one error at one pose. Each response has its own list, so
 /// that its memory can be freed separately.
 struct CellStats {
-  std::vector<std::vector<Moments>> responses;  ///< [responses][cells] moments of the samples that count
-  std::vector<SolveCounts> solves;              ///< [cells] how the solves ended
-  std::vector<FailedSamples> failed;            ///< [cells] first samples that failed
+  /// [responses][cells] Moments of the samples that count in statistics (counts()).
+  std::vector<std::vector<Moments>> responses;
+  std::vector<SolveCounts> solves;    ///< [cells] how the solves ended
+  std::vector<FailedSamples> failed;  ///< [cells] first samples that failed
 
   /// No cells.
   CellStats() = default;

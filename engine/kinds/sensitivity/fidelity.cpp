@@ -60,7 +60,8 @@ struct BothFidelities {
     return std::sqrt(sum / static_cast<double>(first.poses())) / sigma[factor];
   }
 
-  /// Whether equally many samples of the error count in both results, for each response at each pose.
+  /// Whether both results have the same number of samples of the error that count in statistics, for each response at
+  /// each pose.
   bool same_samples(std::size_t factor) const {
     for (std::size_t r = 0; r < first.responses(); ++r) {
       if (!std::ranges::equal(first.count.row(r, factor), second.count.row(r, factor))) return false;

@@ -33,7 +33,7 @@ std::vector<std::vector<std::string>> units_of_indices(const StoredResult& resul
 using ErrorCells = Array<double, axis::Factor, axis::Pose>;
 
 /// [errors x poses] The effects of all errors on one response at each pose: local index x sigma, SI, with rounding
-/// removed.
+/// removed (without_rounding()).
 ErrorCells local_effects(const StoredResult& result, std::size_t response);
 
 /// Bars that show these quantities for each error.

@@ -150,8 +150,8 @@ std::span<const double> changes_of(const StoredResult& result, std::size_t respo
 std::string change_text(double change) { return fmt::format("{:+.1f} %", 100.0 * change); }
 
 /// The size at which to study an error, as a multiple of the size in the study. If the index is proportional to a power
-/// of the size, a study at the returned size gives about this size as tolerance. ratio: tolerance divided by the size
-/// in the study; change: relative change of the index at a tenth of the size.
+/// of the size, a study at the returned size proposes about that size as the tolerance. ratio: tolerance divided by the
+/// size in the study; change: relative change of the index at a tenth of the size.
 double corrected_ratio(double ratio, double change) {
   constexpr double kFallsTooFast = -0.9;
   const double power = -std::log10(1.0 + change);

@@ -28,15 +28,16 @@ inline constexpr double kSmallerSize = 0.1;
 /// The relative change of each global index if the errors are a tenth as large: the index at a tenth of the size,
 /// divided by the index at the study's size, minus 1. Both indices are by the published estimator, over the same poses
 /// (run/evaluate_unit.h), and from the same draws: the first of the study and their mirror images. Mirror images are
-/// used because errors are symmetric (random/distribution.h); without them, a second-order term beside a first-order
-/// one would change the index of a few draws by chance. The change is 0 up to rounding if the response is linear in the
-/// error, or the norm of a linear function. It is -0.9 if the response is quadratic. Errors of the background keep
-/// their sizes. A draw that does not count at one size is left out at both. An index that is rounding (stats/indices.h)
-/// counts as 0. The change is NaN if both indices are rounding, or if one is unknown.
+/// used because errors are symmetric (random/distribution.h); without them, a second-order term in addition to a
+/// first-order one would change the index of a few draws by chance. The change is 0 up to rounding if the response is
+/// linear in the error, or the norm of a linear function. It is -0.9 if the response is quadratic. Errors of the
+/// background keep their sizes. A draw that does not count in statistics (counts()) at one size is left out at both. An
+/// index that is rounding (stats/indices.h) counts as 0. The change is NaN if both indices are rounding, or if one is
+/// unknown.
 ///
 /// All ranks run this function and have the same result, with the same bits for any number of threads. It has no
 /// checkpoint: if a run is stopped during this function, a continued run calls it again from the start. Returns nothing
-/// if the run was stopped. Precondition: a plan of a sensitivity study.
+/// if the run was stopped. Precondition: the plan is that of a sensitivity study.
 std::optional<SensitivityResult::Indices> index_changes(const Plan& plan, const Model& model,
                                                         const RunOptions& options);
 
@@ -82,7 +83,7 @@ inline constexpr double kSameSize = 2.0;
 /// The text names for each error the size at which to study it: "2 errors have an index on gap that changes with size,
 /// by so much at a tenth of it, and a tolerance of another size than was studied: epsilon_3_4_z (-99.1 %; study it at
 /// 0.02 deg), ...". At most ten errors are named, the largest change first. If the index is a power of the size, a
-/// study at the named size gives about this size as tolerance. Empty if there are no such errors.
+/// study at the named size proposes about that size as the tolerance. Empty if there are no such errors.
 std::string wrong_sizes_text(const StoredResult& result, const ResponseTolerances& tolerances);
 
 }  // namespace poesy

@@ -66,8 +66,8 @@ std::vector<double> in_order(const ErrorCells& cells, std::span<const std::size_
   return list;
 }
 
-/// Layers of a heat map: effects, and shares of samples that did not converge. It has a row for each error, in the
-/// order of `rows`, and a column for each pose.
+/// Layers of a heat map: effects, and shares of samples that did not converge. The heat map has a row for each error,
+/// in the order of `rows`, and a column for each pose.
 std::vector<HeatLayer> layers(const StoredResult& result, std::span<const std::size_t> rows,
                               const PoseFigures& figures) {
   std::vector<HeatLayer> list;

@@ -16,7 +16,7 @@ inline constexpr std::array kPointsRadii{0.5, 2.0};
 /// Kendall's tau between the errors' effects (index x sigma) with the points at each of kPointsRadii and with the
 /// study's own points. Computed to first order, without the errors of the background, at some of the poses
 /// (run/evaluate_unit.h). NaN if fewer than two errors have an effect, or if the mechanism refuses the moved points.
-/// Empty if the mechanism has no metric with points, or no fidelity "first-order". Precondition: a plan of a
+/// Empty if the mechanism has no metric with points, or no fidelity "first-order". Precondition: the plan is that of a
 /// sensitivity study.
 Array<double, axis::RadiusMultiple, axis::Response> radius_rank_correlations(const Study& study, const Plan& plan);
 

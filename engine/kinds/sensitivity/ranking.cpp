@@ -67,7 +67,8 @@ Cell rank_cell(const Ranking& ranking, std::size_t at) {
 }
 
 /// Extends the list `columns` by columns with the rank and the effect of each error. letter: the result, A or B.
-/// by_metric: whether headings name the metric of the result instead of the letter. Refers to the ranking.
+/// by_metric: whether headings name the metric of the result instead of the letter. The columns keep a reference to the
+/// ranking.
 void add_columns(std::vector<FilledColumn>& columns, char letter, const Ranking& ranking, bool by_metric) {
   const std::string suffix = letter == 'A' ? "_a" : "_b";
   const NamedUnit& response = ranking.response;

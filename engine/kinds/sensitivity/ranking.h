@@ -74,7 +74,7 @@ double share_not_converged(const SensitivityResult& result, std::size_t factor);
 
 /// Compares the rankings of two results for the errors that both have. Errors without an effect share the last rank.
 /// Errors whose effect cannot be distinguished from rounding have no rank and are left out of Kendall's tau. Throws
-/// InputError if the results are of two kinds, or have no error in common. Precondition: sensitivity results.
+/// InputError if the results are of two kinds, or have no error in common. Precondition: both are sensitivity results.
 TwoRankings two_rankings(const RankedResult& a, const RankedResult& b, RowOrder order = RowOrder::effect);
 
 }  // namespace poesy

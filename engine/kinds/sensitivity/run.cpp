@@ -138,7 +138,8 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
 
 std::size_t cells(const Study& study, std::size_t poses) { return study.analysis.factors.size() * poses; }
 
-/// The expected work of separating the effects of errors (SeparationResult). Each piece of it is one of the poses.
+/// The expected work of separating the effects of errors (SeparationResult). The work is divided into one piece for
+/// each pose.
 WorkOutlook separating(const Study& study, const Model& model, const PoseSet& poses) {
   return {[&](double at) {
     const auto pose = poses[PoseIndex(static_cast<std::size_t>(at * static_cast<double>(poses.size())))];

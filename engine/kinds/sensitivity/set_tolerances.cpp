@@ -257,8 +257,8 @@ std::optional<std::string> perfect_errors_note(const StoredResult& result, const
                      absent == 1 ? "was" : "were", absent == 1 ? "counts" : "count");
 }
 
-/// Refuses a limit on the errors that calibrations leave, because the studies that test tolerances draw errors anew at
-/// each pose, so they have no machines to calibrate.
+/// Refuses the option --limit if the result describes what remains after a calibration, because the studies that test
+/// tolerances draw errors anew at each pose, so they have no machines to calibrate.
 void refuse_calibrated(const TolerancesOptions& options, const StoredResult& result, const Catalog& catalog) {
   const std::optional<Study> study = study_in(result, catalog);
   if (!options.limit || !study || study->analysis.calibration == nullptr) return;

@@ -45,7 +45,7 @@ void append_tolerance_tables(CsvTables& tables, const StoredResult& result);
 void add_tolerance_section(const StoredResult& result, Page& page);
 
 /// The lists of tolerances [errors] that are proposed: with a limit, those of LimitTolerances::equal_effect and
-/// ::equal_tolerance; without a limit, Tolerances::equal_effect. The lists refer to the argument.
+/// LimitTolerances::equal_tolerance; without a limit, Tolerances::equal_effect. The lists refer to the argument.
 std::vector<std::span<const double>> proposed_tolerances(const ResponseTolerances& tolerances);
 
 /// The largest sensible tolerance for each error of a sensitivity result, SI: a quarter of the dimension of the
@@ -58,18 +58,20 @@ ResponseTolerances stored_tolerances(const StoredResult& result, std::size_t res
 
 /// Writes tolerances.csv for programs that assign tolerances. The folder is made if missing. Columns:
 ///
-///     factor, kind (linear or angular), limb, unit (SI), display_unit, index_unit, studied_as (its distribution in the
-///     study) | index, index_ci_low, index_ci_high, mean_square_share, index_change (as
-///     /sensitivity/index_change), with a limit limit_equal_effect and limit_equal_tolerance, and equal_effect, which
-///     does not depend on a limit, in `unit`; then the tolerances once more in `display_unit`: equal_effect_display ...
+///     factor, kind (linear or angular), limb, unit (SI), display_unit, index_unit, studied_as (distribution of the
+///     error in the study), index, index_ci_low, index_ci_high, mean_square_share, index_change (see
+///     SensitivityResult::index_change); then the tolerances in `unit`: limit_equal_effect and limit_equal_tolerance
+///     (only with a limit), and equal_effect (which does not depend on a limit); then these tolerances in
+///     `display_unit`: equal_effect_display ...
 ///
 /// A tolerance is the standard deviation of a normal error, whatever distribution was studied; "inf" means that the
 /// error alone has no effect. Returns the path. Throws FileError.
 std::string write_tolerances(const std::string& folder, const StoredResult& result,
                              const ResponseTolerances& tolerances);
 
-/// Claims tolerances.csv, and with a limit the studies of write_confirmation() and the files that they read. Throws
-/// InputError if a file would be replaced that poesy did not write.
+/// Announces to the folder (OutputFolder::claim) that tolerances.csv will be written, and with a limit the studies of
+/// write_confirmation() and the files that they read. Throws InputError if a file would be replaced that poesy did not
+/// write.
 void claim_tolerance_files(OutputFolder& folder, const StoredResult& result, const ResponseTolerances& tolerances,
                            const Catalog& catalog);
 

@@ -30,7 +30,7 @@ std::vector<ErrorGroup> error_groups(const Analysis& analysis, const ModelDescri
 /// For each group, 1 if one of its errors is correlated with an error of another group, otherwise 0.
 std::vector<std::uint8_t> split_groups(std::span<const ErrorGroup> groups, const Study& study);
 
-/// The indices of two groups.
+/// The positions of two groups in the list of groups.
 using GroupPair = std::pair<std::size_t, std::size_t>;
 
 /// All pairs of groups, with the smaller position first.

@@ -56,7 +56,7 @@ struct IndexPanel {
   std::span<const std::size_t> components(std::size_t quantity) const;
   /// The number of solves of one sample at each pose: A, B, and the mixtures.
   std::size_t solves_of_sample() const { return (shapley ? subsets() : 2 + groups.size()) + pairs.size(); }
-  /// The length of axis::GroupSubset. Precondition: shapley.
+  /// The length of axis::GroupSubset. Precondition: `shapley` is true.
   std::size_t subsets() const { return std::size_t{1} << groups.size(); }
 
  private:
@@ -118,8 +118,8 @@ struct SplitDraws {
     std::optional<ConditionalScores> scores;
   };
 
-  SplitDraws(SplitBlock split, std::size_t subsets);  ///< Prepares the mixtures of all subsets of groups. subsets:
-                                                      ///< their number.
+  /// Prepares the mixtures of all subsets of groups. subsets: the number of these subsets.
+  SplitDraws(SplitBlock split, std::size_t subsets);
 
   SplitBlock block;               ///< the block of correlated errors
   std::vector<Mixture> mixtures;  ///< [subsets] mixtures; the index is the number of the subset of groups that is drawn
@@ -130,9 +130,9 @@ struct SplitDraws {
 
 /// Solves the samples A and B of a panel (IndexPanel), and mixtures of the two: A with the errors of one group, or of a
 /// pair of groups, from B. For Shapley effects, it also solves A with every other subset of groups from B. A mixture
-/// has the same errors at all poses. Errors from B that are correlated with errors from A are drawn conditional on the
-/// latter, with the normal numbers of B. The result of a unit depends only on the study and the unit. Owns the scratch
-/// memory of one thread.
+/// has the same errors at all poses. Errors from B that are correlated with errors from A are drawn conditional on
+/// these errors from A, with the normal numbers of B. The result of a unit depends only on the study and the unit. Owns
+/// the scratch memory of one thread.
 class PanelEvaluator {
  public:
   /// Keeps references to all arguments.
@@ -209,7 +209,8 @@ class PanelEvaluator {
   /// For each pair of groups: GroupRows::first of both groups as one, minus GroupRows::first of each group alone,
   /// summed over the poses.
   OfSamples<axis::Response, axis::GroupPair> pair_first_;
-  /// Squared difference of A and B, summed over the poses that count for this pair of groups.
+  /// Squared difference of A and B, summed over the poses at which A, B and the mixtures of both groups and of the pair
+  /// count.
   OfSamples<axis::Response, axis::GroupPair> pair_between_;
   /// Blocks of correlated errors that belong to several groups, for Shapley effects.
   std::vector<SplitDraws> split_;
@@ -219,7 +220,7 @@ class PanelEvaluator {
   Flags all_count_;  ///< whether all mixtures of each sample count at the present pose
   /// Shapley effects times variance, summed over the poses.
   OfSamples<axis::Response, axis::ErrorGroup> shapley_;
-  /// Squared difference of A and B, summed over the poses that count for Shapley effects.
+  /// Squared difference of A and B, summed over the poses at which all mixtures count (all_count_).
   OfSamples<axis::Response> shapley_between_;
   /// Whether samples A and B and the mixture C of the group (GroupRows) count at the present pose.
   Array<std::uint8_t, axis::ErrorGroup, axis::Sample> group_counts_;

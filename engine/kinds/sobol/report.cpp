@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kMostPairs = 10;  ///< largest number of pairs in a table
 
-/// The word for one of those that have indices in a result: "group" if errors are joined, otherwise "error".
+/// The word for what has an index in a result: "group" if errors are joined, otherwise "error".
 std::string word(const SobolResult& found) { return found.joined ? "group" : "error"; }
 
 double or_least(double value) { return std::isnan(value) ? -std::numeric_limits<double>::infinity() : value; }
@@ -338,8 +338,8 @@ void warn(const StoredResult& result, std::vector<std::string>& list) {
   if (!names.empty()) list.push_back(without_sign_text(some_names(names), names.size() > 1) + ".");
 }
 
-/// The shares of errors in the variance of the ranking response, and its variance at each pose. The shares are Shapley
-/// effects if there are any, because these add up to 1; otherwise total indices.
+/// The shares of errors in the variance of the response by which errors are ranked, and the variance of this response
+/// at each pose. The shares are Shapley effects if there are any, because these add up to 1; otherwise total indices.
 ErrorShares error_shares(const StoredResult& result) {
   const SobolResult& found = sobol_of(result);
   if (found.n.empty()) return {};

@@ -118,7 +118,8 @@ struct SobolResult {
   SobolIndices<axis::Response, axis::ErrorGroup> aggregated;
   /// Indices of vectors over all poses, from the traces of their covariances (Gamboa et al. 2014).
   SobolIndices<axis::SignedVector, axis::ErrorGroup> of_vectors;
-  /// Number of samples from which `at_poses` is computed: those for which the solves of A, B and the mixture count.
+  /// Number of samples from which `at_poses` is computed: those for which the solves of A, B and the mixture of the
+  /// group (IndexPanel) count in statistics.
   Array<std::uint64_t, axis::Response, axis::ErrorGroup, axis::Pose> n;
   Array<double, axis::Response, axis::Pose> mean;  ///< mean of the response, SI
   /// Variance of the response, SI; the indices at a pose are shares of it.
@@ -142,8 +143,8 @@ struct SobolResult {
   SolveCounts total() const { return total_of(solves); }     ///< How the solves at all poses ended.
 };
 
-/// Bytes of the numbers of a result with axes of these lengths. The axis "group" has the errors or groups, whichever
-/// have indices; "other" has length 0 without second-order indices.
+/// Bytes of the numbers of a result with axes of these lengths. The axis "group" has the groups, or the errors if they
+/// are not joined; "other" has length 0 without second-order indices.
 std::size_t sobol_bytes(const AxisLengths& lengths);
 
 /// The Sobol' indices in a stored result. Precondition: the result is of kind `sobol`.

@@ -84,7 +84,7 @@ struct PanelTree {
   }
 };
 
-/// The job of a UnitFold (run/unit_fold.h); its units are those of the panel.
+/// The job of a UnitFold (run/unit_fold.h), whose units are samples of the panel at all poses (PanelUnit).
 struct PanelJob {
   const Plan& plan;
   const Model& model;

@@ -61,7 +61,7 @@ std::string unit_of_change(const SweepResult& found, std::size_t q) {
 }
 
 /// The requirement, such as "limits", in which designs d and e differ and on which figure of merit q depends. Empty if
-/// there is none, so that q compares the two designs.
+/// there is none; the two designs can then be compared by q.
 std::string_view required_otherwise(const SweepResult& found, std::size_t q, std::size_t d, std::size_t e) {
   for (std::size_t k = 0; k < found.keys.size(); ++k) {
     const std::string& key = found.keys[k];
@@ -73,7 +73,7 @@ std::string_view required_otherwise(const SweepResult& found, std::size_t q, std
 }
 
 /// The requirement, such as "limits", in which some design differs from the first one and on which figure of merit q
-/// depends. Empty if there is none, so that q compares all designs.
+/// depends. Empty if there is none; all designs can then be compared by q.
 std::string_view required_otherwise(const SweepResult& found, std::size_t q) {
   for (std::size_t d = 1; d < found.designs(); ++d) {
     if (const std::string_view topic = required_otherwise(found, q, d, 0); !topic.empty()) return topic;
@@ -143,7 +143,7 @@ std::string names_of_keys(const SweepResult& found) {
   return text;
 }
 
-/// "42.3 % at tip_position = 0.1 mm".
+/// A figure of merit of a design, with the name of the design: "42.3 % at tip_position = 0.1 mm".
 std::string at_design(const SweepResult& found, std::size_t q, std::size_t d) {
   return fmt::format("{} at {}", value_text(found, q, found.merit(q, d)), design_name(found, d));
 }

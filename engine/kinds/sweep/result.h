@@ -49,14 +49,13 @@ struct SweepResult {
   Numbers change;       ///< figure of merit minus that of the first design
   Numbers change_low;   ///< lower ends of the intervals of changes
   Numbers change_high;  ///< upper ends of the intervals of changes
-  /// Figure of merit minus that of the best design (best_design()), with the ends of its interval as for changes from
-  /// the first design. Each interval alone has the confidence level. It does not take into account that the best design
-  /// was chosen by the same numbers.
+  /// Figure of merit minus that of the best design (best_design()). Each interval of these changes has the confidence
+  /// level on its own, and does not take into account that the best design was chosen by the same numbers.
   Numbers from_best;
   Numbers from_best_low;   ///< lower ends of the intervals of `from_best`
   Numbers from_best_high;  ///< upper ends of the intervals of `from_best`
-  /// Number of machines that are good in this design and rejected in the first one; 0 if yields are not paired. The
-  /// lists of machines are empty unless the first design has a yield of machines.
+  /// Number of machines that are good in this design and rejected in the first one; 0 if yields are not paired.
+  /// `gained`, `lost` and `machines` are empty unless the first design has a yield of machines.
   Array<std::uint64_t, axis::Design> gained;
   Array<std::uint64_t, axis::Design> lost;      ///< number of machines that are rejected in this design and good in the
                                                 ///< first one

@@ -103,7 +103,7 @@ std::string full_name(const std::string& key) { return key.starts_with("geometry
 SweptNumber number_of(const std::string& value) {
   const std::string_view text = trimmed(value);
   const std::size_t end = std::min(text.find_first_not_of("0123456789+-.eE"), text.size());
-  // Shortens the number at its end until it can be read: the letter in "1 e" or "2e" belongs to the unit and is no
+  // Shortens the number at its end until it can be read: the letter in "1 e" or "2e" belongs to the unit and is not an
   // exponent.
   for (std::size_t length = end; length > 0; --length) {
     const std::optional<double> number = parse_number(trimmed(text.substr(0, length)));

@@ -8,7 +8,8 @@
 namespace poesy {
 namespace {
 
-/// [settings][sliders] The settings of the sliders for which poses are chosen, as factors.
+/// [settings][sliders] The settings of the sliders for which poses are chosen: numbers by which the sliders multiply
+/// the sizes of errors.
 std::vector<std::vector<double>> settings(std::size_t sliders) {
   constexpr std::array kAlike{1.0, 0.25, 0.5, 0.75, 1.25, 1.5, 2.0};
   std::vector<std::vector<double>> list;
@@ -22,8 +23,8 @@ std::vector<std::vector<double>> settings(std::size_t sliders) {
   return list;
 }
 
-/// Chooses poses one after the other: in each step the pose that rejects most of the machines that no chosen pose
-/// rejects.
+/// Chooses poses one after the other: in each step the pose that rejects the largest number of machines that the poses
+/// chosen so far do not reject.
 class PoseCover {
  public:
   /// rejected: [poses][settings x machines] 1 if the pose rejects the machine at the setting, otherwise 0.

@@ -20,7 +20,7 @@ struct DecidingPoses {
 /// slider. errors: number of errors.
 std::vector<double> sizes_of(std::span<const SizedErrors> sliders, std::span<const double> factors, std::size_t errors);
 
-/// Chooses at most `most` poses by the machines that they reject at some settings of the sliders: all sliders at the
+/// Chooses at most `most` poses by the machines that they reject at several settings of the sliders: all sliders at the
 /// same factor, and one slider at its largest factor with the others at 1 or 0.5.
 DecidingPoses deciding_poses(const TriedMachines& tried, const WhatIfMachines& machines,
                              std::span<const SizedErrors> sliders, std::size_t most);

@@ -48,7 +48,7 @@ struct Directions {
 };
 
 Directions directions(const WhatIfMachines::Slopes& slopes, const ScaledLimit& limit, const Plan& plan) {
-  // A direction counts if its squared effect is more than this share of the largest squared effect.
+  // Directions::count includes a direction if its squared effect is more than this share of the largest squared effect.
   constexpr double kLeast = 1e-12;
   linalg::Matrix effects = part_of(slopes, limit);
   for (std::size_t p = 0; p < plan.factors().size(); ++p) {

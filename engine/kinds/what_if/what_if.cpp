@@ -24,8 +24,8 @@ constexpr std::size_t kMostMachines = Plan::kUnitSamples;
 constexpr std::size_t kMostNumbers = 60'000;
 constexpr std::size_t kMostPoses = 150;  // largest number of poses that are solved, so that a report takes seconds
 constexpr std::size_t kMostSliders = 10;
-// The largest allowed error of the linear prediction, as a share of a limit. If the error is larger, there is no
-// prediction.
+// The largest allowed WhatIf::linear_error: the error of the linear prediction if all sizes change by 100 %, as a share
+// of a limit. If the error is larger, there is no prediction.
 constexpr double kMostLinearError = 0.5;
 
 /// The poses with the largest weights, at most kMostPoses, in ascending order.
@@ -89,7 +89,7 @@ std::vector<SizedErrors> leading(const JudgedMachines& judged, const TriedMachin
 
 /// How well the prediction agrees with exact solves of the same machines.
 struct Agreement {
-  /// Error of the linear prediction that the share `conf_level` of the machines does not exceed; see WhatIf.
+  /// Error of the linear prediction (WhatIf::linear_error) that the share `conf_level` of the machines does not exceed.
   double linear_error = 0.0;
   double unsolved = 0.0;  ///< largest share of machines that are predicted, but cannot be solved at the changed sizes
 };
@@ -137,7 +137,8 @@ Agreement agreement(const TriedMachines& tried, WhatIfMachines& machines, std::s
 }
 
 /// Whether a prediction is possible: all limits are judged at single poses, all limited responses have a limited
-/// vector, and there are errors to change.
+/// vector, these vectors have few enough components for the report, and there are errors to change and more than one
+/// machine.
 bool may_be_predicted(const JudgedMachines& judged, const LimitedVectors& vectors) {
   const std::vector<ResponseLimit>& limits = judged.study.analysis.limits;
   return vectors.rows() > 0 && vectors.rows() <= kMostNumbers / kMostMachines &&

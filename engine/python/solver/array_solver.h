@@ -42,7 +42,7 @@ class ArraySolver {
   /// Throws InputError for the first pose that is not finite or out of reach. poses: [poses x coordinates], SI.
   void check_poses(std::span<const double> poses) const;
 
-  /// Questions about geometry that may be a mistake (mechanism_doubts()).
+  /// Warnings of geometry that may be a mistake (mechanism_doubts()), one line each.
   std::vector<std::string> doubts() const;
 
   /// A warning of poses that are farther outside the workspace than the workspace is wide; empty if there are no such
@@ -53,8 +53,9 @@ class ArraySolver {
   void solve(const ArrayJob& job, const std::function<void()>& between) const;
 
  private:
-  /// The scratch memory of one call. A call with more samples than a block holds (kBlock) solves them block by block,
-  /// and copies the errors and responses of each block to `errors` and `responses`.
+  /// The scratch memory of one call. A call with more than kBlock samples solves them in blocks of at most kBlock
+  /// samples. It copies the errors of a block from the caller's array to `errors`, and after the solve the responses
+  /// from `responses` to the caller's array.
   struct Scratch {
     std::unique_ptr<Evaluator> evaluator;
     std::vector<double> errors;     ///< [errors x kBlock] errors of a block

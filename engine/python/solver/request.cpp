@@ -34,8 +34,8 @@ Study study_of_text(const std::string& text, std::span<const GivenKey> given = {
   return poesy::study_of_text(text, "", registry(), StudyUse::evaluate, kinds, nullptr, given);
 }
 
-/// The geometry parameters of the request as keys of a study. usual: a study of the same mechanism with its own
-/// geometry, from which the dimensions of the parameters are taken.
+/// The geometry parameters of the request as keys of a study. usual: a study of the same mechanism without these
+/// changes, from which the dimensions of the parameters are taken.
 std::vector<GivenKey> geometry_keys(const Request& request, const Study& usual) {
   std::vector<GivenKey> keys;
   for (const auto& [name, value] : request.geometry) {

@@ -101,8 +101,8 @@ std::vector<std::size_t> ranks(std::span<const double> values) {
   return rank;
 }
 
-/// The relative change from a to b. Changes below 1e-10 count as zero, because they may be rounding errors of solvers
-/// (about 1e-14 rad or m in values of about 1e-3 rad or m).
+/// The relative change from a to b. A change below 1e-10 is returned as zero, because it may be rounding error of the
+/// solver (about 1e-14 rad or m in values of about 1e-3 rad or m).
 double change_of(double a, double b) {
   constexpr double kRounding = 1e-10;
   const double change = (b - a) / std::abs(a);

@@ -46,7 +46,8 @@ struct BarQuantity {
   ArrayName high = {};  ///< upper ends of the intervals of `value`; empty if there are none
 };
 
-/// A figure of horizontal bars. A reader chooses an option of each choice, and sees a bar for each series and item.
+/// A figure of horizontal bars. A reader chooses a quantity and an option of each choice, and sees a bar for each
+/// series and item.
 struct Bars {
   std::vector<Choice> choices;           ///< choices of the reader
   std::vector<BarQuantity> quantities;   ///< quantities that bars may show
@@ -209,7 +210,7 @@ struct WhatIf {
   ArrayName components = {};
   ArrayName deviations = {};  ///< [errors x machines] deviations of the errors from their means at the study's sizes
   ArrayName slopes = {};      ///< [poses x components x errors] derivatives of the components by the errors
-  double yield = 0.0;         ///< yield of the study
+  double yield = 0.0;         ///< yield of the study, 0 to 1
   double yield_low = 0.0;     ///< lower end of the interval of the study's yield
   double yield_high = 0.0;    ///< upper end of the interval of the study's yield
   double quantile = 0.0;      ///< standard normal quantile for the confidence level of the intervals

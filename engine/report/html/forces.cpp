@@ -14,7 +14,7 @@
 namespace poesy {
 namespace {
 
-// A force smaller than this, relative to the largest force of a limb, counts as zero.
+// A force below this share of the largest force of a limb is rounding error, and is shown as zero.
 constexpr double kRounding = 1e-12;
 
 /// The force of a limb or of a drive at each pose of the result.
@@ -79,8 +79,8 @@ std::vector<ForcePose> poses_of(const StoredResult& result, const Model& model, 
   return list;
 }
 
-/// The forces at a pose, in the form of shares. of_limbs, of_drives: the largest force of a limb and of a drive in all
-/// pictures (SI), which have the largest share and the longest arrow.
+/// The forces at a pose as PartShares: for limbs in SI, for drives as lengths of arrows relative to the longest one.
+/// of_limbs, of_drives: the largest force of a limb and of a drive in all pictures, SI.
 PartShares shares_at(const Sketch& sketch, std::size_t pose, std::span<const Force> forces, double of_limbs,
                      double of_drives) {
   PartShares parts(sketch);

@@ -27,8 +27,8 @@ std::string escaped(std::string_view text);
 /// An element `<TAG ATTRIBUTES>text</TAG>` with the text escaped. attributes: HTML, not escaped.
 std::string element(std::string_view tag, std::string_view text, std::string_view attributes = {});
 
-/// A table as HTML in a box that scrolls: caption, headings with units, cells, and notes. The box has the table's name
-/// in the attribute data-table. A cell with Cell::boxes is drawn as a tolerance frame.
+/// A table as HTML: a box that scrolls, with the caption, the headings with units and the cells, followed by the notes.
+/// The box has the table's name in the attribute data-table. A cell with Cell::boxes is drawn as a tolerance frame.
 std::string html_table(const Table& table);
 
 /// A section of the report with a heading. Its functions escape all texts, except arguments that are HTML.

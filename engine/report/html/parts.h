@@ -29,11 +29,11 @@ struct ReportedResult {
 
 /// The names of the quantities at these indices.
 std::vector<std::string> names_of(const std::vector<NamedUnit>& things, std::span<const std::size_t> positions);
-/// The indices of the headline's responses (those that a summary shows). The response that ranks errors
+/// The indices of the responses in StoredResult::headline (those that a summary shows). The response that ranks errors
 /// (default_ranking()) comes first, and responses that do not vary come last.
 std::vector<std::size_t> headline_order(const StoredResult& result);
-/// The indices of all responses: those of the headline in headline_order(), followed by the others, except that all
-/// responses that do not vary come last.
+/// The indices of all responses: those of StoredResult::headline in the order of headline_order(), followed by the
+/// others, except that all responses that do not vary come last.
 std::vector<std::size_t> response_order(const StoredResult& result);
 
 /// The units in which these responses are shown: for each response a list with one unit.
@@ -45,10 +45,10 @@ bool mixed_units(const std::vector<NamedUnit>& things);  ///< Returns true if th
 
 /// The responses and poses that the figures of a result show. They are limited so that a report stays small.
 struct ShownCells {
-  /// The largest number of values with which figures show all responses. With more, figures leave out first the
-  /// responses outside the headline, and if that is not enough, poses.
+  /// If the figures of all responses would have more values than this, the responses outside StoredResult::headline are
+  /// left out, and if the others still have too many values (kMost, kMostInLayer), also poses.
   static constexpr std::size_t kMostWithAllResponses = 300'000;
-  static constexpr std::size_t kMost = 600'000;         ///< The largest number of values in the figures of a page.
+  static constexpr std::size_t kMost = 600'000;         ///< The largest number of values of all shown responses.
   static constexpr std::size_t kMostInLayer = 400'000;  ///< The largest number of values of one response.
 
   std::vector<std::size_t> responses;  ///< indices of the responses that are shown
@@ -56,7 +56,7 @@ struct ShownCells {
   std::size_t all_responses = 0;       ///< number of responses before some were left out
   std::size_t all_poses = 0;           ///< number of poses in the result
 
-  /// Keeps the values at the poses that are shown: [rows x shown poses]. values: values at all poses [rows x all
+  /// Returns the values at the poses that are shown: [rows x shown poses]. values: values at all poses [rows x all
   /// poses].
   std::vector<double> at_poses(std::span<const double> values) const;
   bool thinned() const { return poses.size() < all_poses; }  ///< Returns true if poses are left out.
@@ -68,7 +68,7 @@ struct ShownCells {
 inline constexpr std::size_t kSummaryRows = 4;
 
 /// Chooses the responses and poses that figures show. rows: number of values of each response at each pose. responses:
-/// the responses to show; none: all responses, or those of the headline if all would give too many values.
+/// the responses to show; none: all responses, or those of StoredResult::headline if all would give too many values.
 ShownCells shown_cells(const StoredResult& result, std::size_t rows,
                        std::optional<std::vector<std::size_t>> responses = std::nullopt);
 
@@ -112,12 +112,13 @@ class PoseFigures {
   ShownCells shown_;
 };
 
-/// Gives a course of estimates the two ends of each interval. If the course has half-widths instead of ends, the ends
-/// are computed from the half-widths.
+/// Returns the estimates with the two ends of each interval. If `course` has half-widths instead of ends, the ends are
+/// computed from the half-widths.
 EstimateCourse with_ends(EstimateCourse course);
 
-/// The curve of the estimates of one quantity over the number of samples, with their intervals, in units of `unit`
-/// (SI). at: index of the quantity in the course. array: beginning of the names of the stored arrays.
+/// The curve of the estimates of one quantity over the number of samples, with their intervals. unit: the unit of the
+/// curve in SI, such as 0.001 for mm. at: index of the quantity in `course`. array: beginning of the names of the
+/// stored arrays.
 Series series_of(const EstimateCourse& course, std::size_t at, double unit, std::string label, const std::string& array,
                  ArrayPool& pool);
 

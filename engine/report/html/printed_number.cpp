@@ -83,7 +83,7 @@ PrintedNumber printed(double shown, int digits) {
 
 std::vector<PrintedNumber> printed_numbers(std::span<const Cell> column, int digits) {
   int most = digits;
-  for (const Cell& cell : column) {  // whole numbers are exact, so their digits do not count here
+  for (const Cell& cell : column) {  // whole numbers are exact, so the other numbers need not have as many digits
     if (digits == 0 && cell.value && cell.text.find_first_of(".e") != std::string::npos)
       most = std::max(most, digits_of(cell.text));
   }

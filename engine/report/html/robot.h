@@ -33,8 +33,8 @@ std::vector<double> divided_shares(const StoredResult& result, const std::vector
 /// damaged result file may have any number of coordinates.
 bool has_pictures(const ReportedResult& reported);
 
-/// The sketch of the mechanism at a pose; an empty pose means home. None if the model has no picture, or if it cannot
-/// reach the pose, because a result file may have any poses.
+/// The sketch of the mechanism at a pose; an empty pose means home. None if the model has no picture, or if the
+/// mechanism cannot reach the pose, which may happen because a result file may have any poses.
 std::optional<Sketch> sketch_at(const Model& model, std::span<const double> pose);
 
 /// The title of a picture: "Pose 4 (z -195 mm): WHY".
@@ -44,9 +44,9 @@ std::string pose_title(const StoredResult& result, std::size_t pose, const std::
 /// two ends.
 std::string colour_legend(const std::string& what, const std::string& least, const std::string& largest);
 
-/// Adds to a section pictures of the mechanism at home and at extreme poses (largest effect, condition number or
-/// coordinate), and tables with the place of each error. Limbs and joints are coloured by the shares of their errors.
-/// Nothing is added if the mechanism cannot be built again or has no picture.
+/// Adds to a section pictures of the mechanism at home and at extreme poses (largest or smallest effect or coordinate,
+/// largest condition number), and tables with the place of each error. Limbs and joints are coloured by the shares of
+/// their errors. Nothing is added if the mechanism cannot be built again or has no picture.
 void add_robot(const ReportedResult& reported, const ErrorShares& shares, Page& page, Section& section);
 
 }  // namespace poesy

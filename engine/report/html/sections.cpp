@@ -62,8 +62,8 @@ Table failures_table(const ReportedResult& result) {
   return table;
 }
 
-/// Adds to the page bars that show for each row of the tally (SolveTally) the share of solves that did not converge, if
-/// there are several rows.
+/// Adds to the page bars for the rows of the tally (SolveTally) in which solves did not converge, with the share of
+/// these solves. Adds nothing if there is only one row.
 void add_bars(const SolveTally& outcomes, Page& page, Section& section) {
   if (outcomes.names.size() < 2) return;
   const std::vector<double> shares = outcomes.shares_by_row();
@@ -191,7 +191,7 @@ Table facts_table(const ReportKind& kind, std::span<const ReportedResult> result
   return table;
 }
 
-/// Says which settings the text of the study holds, and which numbers came from tables.
+/// A text that says which settings the study in the report has, and which numbers came from tables.
 std::string_view origin_text(const StudyWords& words) {
   if (!words.from_tables) {
     return "The study below holds every setting, those that its author left out among them. With the same program on "

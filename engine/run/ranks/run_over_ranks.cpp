@@ -27,7 +27,8 @@ constexpr std::chrono::milliseconds kQuick{3};
 /// The largest number of pieces of work that are handed out but not yet merged. If ranks could use more, merging on
 /// rank 0 would be the bottleneck anyway.
 constexpr std::size_t kMostSlots = 65536;
-/// The largest number of bytes of outputs that wait on rank 0 to be merged in order.
+/// Rank 0 hands out no work while more than this number of bytes of outputs from other ranks wait to be merged in
+/// order.
 constexpr std::size_t kMostWaitingBytes = std::size_t{256} << 20U;
 /// Outputs are collected in a message. It is sent when it has kSendBytes bytes, when kSendEvery has passed since the
 /// previous message, or when little work is left.
@@ -131,7 +132,7 @@ class RankPool {
   }
 
   SlotOf slot_of_;
-  std::size_t low_;  ///< the pool asks for more work when only this number of pieces is left in the ranges
+  std::size_t low_;  ///< the pool asks for work when this number of pieces, or none, is left in the ranges
   std::mutex mutex_;
   std::condition_variable given_;
   std::condition_variable hungry_;

@@ -46,15 +46,15 @@ class Ranks {
 /// engine/base/bytes.h.
 enum class RankMessage : std::uint64_t {
   study,      ///< rank 0 to all: text that describes the study and the program
-  agreed,     ///< to rank 0: this rank has the same study. Content: its number of threads
+  agreed,     ///< to rank 0: the sender has the same study. Content: its number of threads
   begin,      ///< rank 0 to all: a stage begins. Content: its number, and its state as a block
-  ready,      ///< to rank 0: this rank is ready for the stage. Content: numbers of the stage and of threads
+  ready,      ///< to rank 0: the sender is ready for the stage. Content: number of the stage, its number of threads
   range,      ///< rank 0 to one: work to do. Content: number of the first piece of work, and number of pieces
   outputs,    ///< to rank 0: outputs. Content: the number of each piece of work, and its output as a block
   end,        ///< rank 0 to all: the stage ends. Content: 1 if it is complete, else 0; its state as a block
-  leaving,    ///< to rank 0: this rank cannot go on. Content: LeaveReason, and text
+  leaving,    ///< to rank 0: the sender cannot go on. Content: LeaveReason, and text
   dismissed,  ///< rank 0 to all: the run is over. Content: exit code
-  gone        ///< to rank 0: the last message of this rank
+  gone        ///< to rank 0: the last message of the sender
 };
 
 /// Why a rank cannot go on.

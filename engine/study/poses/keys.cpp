@@ -156,7 +156,8 @@ void read_curve(const StudySection& section, const StudyValue& value, const Mode
   trajectory.time = part_of(section, trajectory, {curve.start, curve.end}, "curve '" + curve.name + "'");
 }
 
-/// Completes a trajectory from a file, and reads the file unless the study is read for StudyUse::evaluate.
+/// Reads the file of a trajectory, unless the study is read for StudyUse::evaluate. If the study states only one of the
+/// keys `points` and `time`, sets the other one to its default.
 void read_curve_file(const StudySection& section, const ModelDescription& model, const Reading& reading,
                      Trajectory& trajectory) {
   section.refuse("origin", "a trajectory from a file, whose points are as they are");

@@ -87,10 +87,10 @@ struct Trajectory {
   Place first_row = {};  ///< place of the first point in the file; each further point is one line further down
 };
 
-/// The points of a trajectory: of a curve, points at evenly spaced times, including both ends; of a file, its own
-/// points if Trajectory::points is 0, otherwise points that are interpolated at evenly spaced times. Each coordinate is
-/// interpolated independently of the others, by a modified Akima spline through four or more points, or by straight
-/// lines through two or three. Precondition: a file was opened, and the times are inside its range.
+/// The points of a trajectory. For a curve: its points at evenly spaced times, including both ends. For a file: the
+/// points in the file if Trajectory::points is 0, otherwise points that are interpolated at evenly spaced times. Each
+/// coordinate is interpolated independently of the others, by a modified Akima spline through four or more points, or
+/// by straight lines through two or three. Precondition: a file was opened, and the times are inside its range.
 TimedPoints sampled(const Trajectory& trajectory, const ModelDescription& model);
 
 /// The range in which a joint's displacement from home must be, including both ends.

@@ -27,7 +27,7 @@ std::string range_text(const Range& range, Dimension dimension) {
                      readable_text({range.upper, dimension}, kDigits));
 }
 
-/// "z is from 380 mm to 500 mm, in the mechanism's workspace from -500 mm to -380 mm".
+/// The clause "z is from 380 mm to 500 mm, in the mechanism's workspace from -500 mm to -380 mm".
 std::string both_ranges(std::span<const Range> box, const ModelDescription& model, std::size_t c) {
   const PoseCoordinate& coordinate = model.pose_coordinates[c];
   return fmt::format("{} is {}, in the mechanism's workspace {}", coordinate.name,

@@ -15,7 +15,7 @@ std::string apart_clause(std::span<const Range> box, const ModelDescription& mod
 /// A clause that says what in the box of a selection (PoseSelection::workspace) looks like a wrong sign or unit:
 /// - the box does not overlap the workspace that the mechanism states (apart_clause());
 /// - in one coordinate, less than half of the box is in the mechanism's workspace, and more than half of the selected
-/// poses are outside it; a study may well widen or shift the workspace less than that;
+///   poses are outside it; a smaller change of the workspace is often intended;
 /// - the box has an angle beyond +-360 deg, although the mechanism's workspace has none.
 ///
 /// Empty if nothing looks wrong, or if the selection has no box. poses: the selected poses; empty if they are not
