@@ -84,7 +84,7 @@ TEST(DrawingGaps, AreWithoutZonesAndStatedErrors) {
 }
 
 /// The pins of the planar 3-RRR, which is over-constrained, and those of a Delta, which is not.
-TEST(DrawingGaps, AClearanceInAnOverConstrainedMechanismIsDoubtful) {
+TEST(DrawingGaps, AClearanceMayAddToAGap) {
   const std::string last = R"({ name = "C", type = "R", at = ["c", 0, 0], axis = "z" } ])";
   const std::string pin =
       "\nclearances = [ { name = \"play\", joint = \"C\", length = \"20 mm\", fit = \"10 H7/f7\" } ]";
