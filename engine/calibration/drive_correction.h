@@ -22,7 +22,9 @@ struct CommandedPose {
   std::vector<double> pose;  ///< commanded coordinates, SI
   Placement nominal;         ///< placement of the perfect mechanism's platform at the pose
   Matrix motion;             ///< [6 x coordinates] derivatives of rotation (rad) and of P (m) by the coordinates
-  Matrix per_error;          ///< [coordinates x coordinates] derivatives of the pose by the coordinate errors
+  /// [coordinates x coordinates] The change of the pose that changes each coordinate error by 1: the inverse of the
+  /// derivatives of the coordinate errors by the pose.
+  Matrix per_error;
 };
 
 /// A controller that knows some errors and moves the drives so that the commanded coordinates reach their commanded

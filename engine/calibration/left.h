@@ -53,8 +53,8 @@ Displacement seen_by_device(const Displacement& displacement, const Placement& n
 Matrix left_of_machines(ExactMachine& machine, std::span<const double> pose, std::span<const double> drive_at,
                         const Matrix& errors, const Matrix& phi, const Corrected& corrected);
 
-/// The remaining displacement at a pose; none if the corrected drive positions are not found or a machine is not
-/// solved.
+/// The remaining displacement at a pose. None if the corrected drive positions are not found, or if the machine with
+/// the estimated errors, or one of those solved for the derivatives, is not solved.
 std::optional<LeftAtPose> left_at(ExactMachine& machine, const DriveCorrection& correction,
                                   std::span<const double> pose, const Corrected& corrected, const Knowledge& known);
 

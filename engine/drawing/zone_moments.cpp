@@ -74,7 +74,8 @@ Integrals over_interval(const Density& middle, double half) { return {middle.mas
 
 /// Integrates over all tilts of a rectangle with |lift_x| + |lift_y| = lift. Returns the integral of the density, and
 /// the integral of the density times lift_x^2 + lift_y^2. The two sums (lift_x +- lift_y) / sqrt 2 are independent, and
-/// the larger magnitude of the two is lift / sqrt 2.
+/// the larger magnitude of the two is lift / sqrt 2. Both integrals lack the same constant factor, here the four sides
+/// of the square, which cancels in cut().
 std::pair<double, double> rectangle_at(const Density& tilt, double lift) {
   const double larger = lift / sqrt2;
   const double weight = tilt.at(larger) * tilt.mass(larger);
@@ -83,7 +84,7 @@ std::pair<double, double> rectangle_at(const Density& tilt, double lift) {
 
 /// Integrates over all directions of a tilt of this length; for a rectangle, `length` is the lift of the extreme
 /// points. Returns the integral of the density, and the integral of the density times the sum of the squared tilt
-/// errors.
+/// errors, both without the same constant factor, which cancels in cut().
 std::pair<double, double> tilt_at(const Feature& feature, const Density& tilt, double length) {
   if (feature.kind == FeatureKind::rectangle) return rectangle_at(tilt, length);
   const double weight = (feature.one_direction ? 1.0 : length) * tilt.at(length);

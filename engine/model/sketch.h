@@ -22,8 +22,11 @@ struct SketchedJoint {
   /// True if the frame behind this joint (that of the next joint, or of the platform) has errors; for the first joint
   /// also true if the joint itself or the base has errors.
   bool has_errors;
-  std::size_t first = 1;   ///< index in the limb's list of Sketch::frames: frame of the joint's first axis
-  std::size_t frame = 1;   ///< index in the limb's list of Sketch::frames: frame with its origin at the joint
+  /// Indices in the limb's list of Sketch::frames.
+  /// @{
+  std::size_t first = 1;  ///< frame of the joint's first axis, which gives the direction `axis`
+  std::size_t frame = 1;  ///< frame whose origin is `point`; it may be that of a later axis of the joint
+  /// @}
   std::string drive = {};  ///< name of the drive; empty if the joint has none
 };
 

@@ -19,7 +19,7 @@ const Process& process_of(const AllocationProblem& problem, const SizedProblem& 
   return problem.parts[part][sized.processes[part].front().index];
 }
 
-/// The tolerance T of a size (size_of()), within the bounds of the process. At a bound it is exactly the bound's
+/// The tolerance whose size_of() is `size`, within the bounds of the process. At a bound it is exactly the bound's
 /// tolerance.
 double tolerance_within(const Process& process, double size, Stacking stacking) {
   if (size == size_of(process.hi, stacking)) return process.hi;

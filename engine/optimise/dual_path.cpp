@@ -188,8 +188,9 @@ bool DualPath::centre(double mu) {
   return is_centred(mu);
 }
 
-/// [working set x parts] The matrix P A G with P = diag(multipliers), the effects A [working set x parts] and the
-/// inverse curvatures G [parts x parts] of the best responses. G is diagonal except for pairs.
+/// [working set x parts] The matrix P A G with P = diag(multipliers), the effects A [working set x parts], and G [parts
+/// x parts]: the decrease of each part's best size per unit of its price (BestResponse). G is diagonal except for the
+/// two parts of a pair (Within).
 std::vector<double> DualPath::scaled_effects() const {
   const std::size_t parts = problem_.parts();
   std::vector<double> scaled(effects_.size());

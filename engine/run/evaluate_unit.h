@@ -81,11 +81,12 @@ std::span<const std::size_t> points_within(const WorkUnit& unit, std::span<const
 /// The largest number of poses at which a sensitivity study solves again to check an assumption, such as linearity.
 inline constexpr std::size_t kSomePoses = 32;
 
-/// The number of poses at which a check of an assumption (kSomePoses) solves again, in a study with `poses` poses.
+/// The number of poses, at most kSomePoses, at which a sensitivity study with `poses` poses solves samples again to
+/// check an assumption.
 constexpr std::size_t some_poses(std::size_t poses) { return std::min(kSomePoses, poses); }
 
-/// The n-th pose at which a check of an assumption (kSomePoses) solves again. The poses are evenly spaced over the
-/// order of the study's poses. Precondition: n < some_poses(poses).
+/// The n-th of these poses. They are evenly spaced over the order of the study's poses. Precondition: n <
+/// some_poses(poses).
 constexpr PoseIndex some_pose(std::size_t n, std::size_t poses) { return PoseIndex(n * poses / some_poses(poses)); }
 
 /// The outcomes of the samples of one work unit. They refer to memory of the solver, and are valid until its next

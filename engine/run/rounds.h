@@ -61,7 +61,8 @@ class Rounds {
   }
 
   /// Ends the round, and begins the next one if any slot needs more samples. Returns true if a round began.
-  /// estimates(slot): the quantity of each response for this slot.
+  /// estimates(slot): for each response, the estimate of the quantity whose precision decides, from the samples of this
+  /// slot so far.
   bool go_on(const std::function<std::vector<Estimate>(std::size_t slot)>& estimates);
   /// How the sampling ended; empty for a fixed number of samples. Precondition: all rounds have ended.
   std::optional<ConvergenceResult> result() const;

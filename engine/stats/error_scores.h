@@ -58,7 +58,7 @@ class PolynomialScore {
   /// few distinct points. Precondition: weights are positive and sum to 1; at least two distinct points.
   PolynomialScore(std::span<const double> points, std::span<const double> weights, std::size_t degree = kDegree);
 
-  double sigma() const { return sigma_; }  ///< The size t of the error: standard deviation of the points.
+  double sigma() const { return sigma_; }  ///< The size of the error: the standard deviation of the points.
   double operator()(double error) const;   ///< The score S(error).
   double growth(double error) const;       ///< The growth score: the counterpart of S for growth by kErrorGrowth.
   double parabola(double error) const;     ///< The part of the score S(error) up to degree 2.

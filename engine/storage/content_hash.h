@@ -54,7 +54,7 @@ std::string hex(std::span<const std::byte> bytes);  ///< The bytes in lower-case
 /// all objects the attributes of dimension scales: CLASS, NAME, DIMENSION_LIST, REFERENCE_LIST, and names that begin
 /// with _Netcdf4 or _nc3.
 ///
-/// Throws h5::Error if a dataset or an attribute has neither numbers nor text, which no result file has.
+/// Throws h5::Error if a dataset or an attribute contains anything but numbers or text. Result files have only these.
 std::string content_sha256(const h5::File& file);
 
 }  // namespace poesy

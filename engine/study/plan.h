@@ -111,7 +111,8 @@ class Plan {
   void transform(std::span<double> uniforms, std::size_t count) const;
   /// Does the same as transform(), but only for the rows of the errors in per_pose(); other rows stay unchanged.
   void transform_per_pose(std::span<double> uniforms, std::size_t count) const;
-  /// [factors of the model] The constant errors, SI: zero for all factors(), even while only one of these varies.
+  /// [factors of the model] The values of errors that stay constant, SI. Each error of factors() has 0 here. If a study
+  /// varies one error at a time, the others of factors() are then 0.
   std::span<const double> background() const { return background_; }
   const SolverOptions& solver() const { return solver_; }        ///< The options with which each sample is solved.
   NotConverged not_converged() const { return not_converged_; }  ///< How samples without a solution are treated.

@@ -145,7 +145,7 @@ class MeetStep {
     }
   }
 
-  /// Adds a limb's projection P to the matrix of the equations of the bodies.
+  /// Adds a limb's projection P (see MeetStep) to the matrix of the equations of the bodies.
   template <std::size_t n>
   void add_projection(const KernelLimb& limb, const Limb& of) {
     T block[36];

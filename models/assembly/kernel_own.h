@@ -78,7 +78,7 @@ class OwnStep {
     T xi[6];                                     ///< mismatch xi
     T columns[6 * kMostOwnJoints];               ///< columns of S: twists of the passive joints
     T turned[6 * kMostOwnJoints];                ///< columns of D = E(-ad xi) S, with E of OwnStep
-    T inverse[kMostOwnJoints * kMostOwnJoints];  ///< inverse of the limb's matrix
+    T inverse[kMostOwnJoints * kMostOwnJoints];  ///< inverse of the matrix of the equations for dq
     T by_to[6 * kMostOwnJoints];                 ///< dq of the passive joints per unit of V_b, the twist of body `to`
     T by_from[6 * kMostOwnJoints];               ///< dq per unit of V_a, the twist of body `from`
   };

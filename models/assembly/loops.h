@@ -26,9 +26,9 @@ class Loops {
   /// mismatch xi of each limb is multiplied by W^(1/2).
   Eigen::VectorXd taken_away(const Eigen::VectorXd& mismatch) const;
 
-  /// The slopes of ln det N with respect to the errors of each limb's frames: a vector for each limb, with a slope (a
-  /// wrench) for each frame. The product of a slope with error_twist() is the first-order change per unit of an error,
-  /// if bodies and joints follow the error.
+  /// The slopes of ln det N (see the class) with respect to the errors of each limb's frames: a vector for each limb,
+  /// with a slope (a wrench) for each frame. The product of a slope with error_twist() is the first-order change of ln
+  /// det N per unit of an error, if bodies and joints follow the error.
   std::vector<std::vector<Screw>> determinant_slopes() const;
 
  private:

@@ -60,7 +60,7 @@ class Solver {
   struct Manner {
     double damping = 1.0;      ///< factor of each step
     bool is_loaded = true;     ///< true if the load acts
-    bool must_shrink = false;  ///< true if the attempt gives up at long steps, as approach() does
+    bool must_shrink = false;  ///< true: gives up at a long first step, or if steps do not shrink
   };
 
   Solution attempt(std::span<const std::vector<Transform>> frames, const SolverStart& start,

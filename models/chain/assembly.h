@@ -58,9 +58,9 @@ class Assembly {
   /// singular pose, the loops open at a sum of -1. The result is 0 if the perfect mechanism is singular.
   double nearing(const FrameEntry& entry);
 
-  /// Returns true if limbs with these fixed frames [chain.frames()] cannot be assembled. The passive joints descend
-  /// from nominal displacements until they rest. Returns false if they do not come to rest, or if the perfect mechanism
-  /// is singular.
+  /// Returns true if limbs with these fixed frames [chain.frames()] cannot be assembled. A descent from
+  /// nominal displacements minimises the mismatch of the limbs over the passive joints. Returns false if it does not
+  /// converge, or if the perfect mechanism is singular.
   bool is_impossible(std::span<const lie::Transform<double>> frames);
 
  private:

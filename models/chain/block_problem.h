@@ -136,7 +136,7 @@ struct KernelOptions {
   KernelMethod method;           ///< method of iteration
   double tolerance;              ///< tolerance on the change of the residual in an iteration (rad, m)
   double rounding_level;         ///< a change of the residual below this may be rounding (rad, m)
-  double last_step;              ///< a safe Newton step shorter than this is the last one (rad, m)
+  double last_step;              ///< ends after a shorter Newton step that is safe (BlockKernel) (rad, m)
   double largest_step;           ///< longest Newton step of the passes direct and rescue (rad, m)
   std::uint32_t max_iterations;  ///< number of iterations after which a sample is given up
 };

@@ -15,7 +15,7 @@ inline constexpr double kToleranceByMetric = 1e-14;
 /// (rad, m) the norm |xi|_W = sqrt(xi^T W xi) is a length (m).
 struct Metric {
   lie::Matrix6<double> W;  ///< symmetric and positive definite: blocks in m^2, m and 1
-  double reach;            ///< reach of the chain (m); changes and rounding are relative to this length
+  double reach;            ///< reach of the chain (m): unit of tolerances on |xi|_W and of its rounding
 };
 
 /// The metric W = 1/n sum P_a^T P_a with P_a = [-[c_a]x, I]: |xi|_W is the root mean square displacement of the n

@@ -12,8 +12,9 @@ namespace poesy::file {
 /// at home. Throws InputError if two bodies have the same name.
 std::vector<assembly::Body> bodies_of(const Numbers& numbers, const Transform& platform);
 
-/// The index of the body that `reference` names for copy `copy` (counted from 0) of a limb; `usual` if there is no
-/// reference. Throws InputError if no body has that name, or if the copies of limb and body do not match.
+/// The index of the body that `reference` names; `usual` if there is no reference. If the body has copies, copy k of
+/// the limb refers to copy k of the body (k: `copy`, from 0). Throws InputError if no body has that name, or if limb
+/// and body have different copies.
 std::size_t body_of(const MechanismFile& file, const LimbLines& limb, const std::optional<Reference>& reference,
                     std::size_t usual, std::size_t copy);
 

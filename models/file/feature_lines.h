@@ -52,7 +52,7 @@ struct FeatureLines {
   std::vector<Expression> size;        ///< sides of a rectangular plane, along x and y
   std::optional<Expression> diameter;  ///< diameter of a round plane
   std::optional<Triple> direction;     ///< direction of a distance
-  /// The nominal length of a distance.
+  /// Nominal length of a feature of the kind `distance`.
   std::optional<Expression> nominal_size;
   std::optional<Triple> z;             ///< z axis of the feature; default: the joint's axis
   std::optional<Triple> x;             ///< x axis of the feature; default: the x axis of the joint's frame

@@ -134,7 +134,7 @@ struct Mechanism {
   std::vector<Factor> factors = {};           ///< errors
   std::vector<chain::ErrorTerms> terms = {};  ///< contributions of each error to components of frames' errors
   std::vector<FactorSet> sets = {};           ///< sets of errors, "all" first
-  std::vector<EachLimb> each = {};            ///< errors with limb = "each"
+  std::vector<EachLimb> each = {};            ///< for messages: tables [[error]] with limb = "each"
   ErrorsAbout about = ErrorsAbout::joint;     ///< points about which angular errors of frames rotate
   /// True if the solvers rotate angular errors of a limb's first and last frame about the joint next to the frame
   /// (chain::Limb::errors_at_joints). False if they rotate them about the origin of base or platform, as always if

@@ -32,14 +32,14 @@ inline SinCos<T> sin_cos_near_zero(T x) {
   return {madd(x * z, polynomial(z, kSin), x), madd(z * z, polynomial(z, kCos), nmadd(T(0.5), z, T(1.0)))};
 }
 
-/// Sine and cosine for |x| < 100, within 2 ulp (units in the last place). Near a zero at n pi/2, the absolute error is
-/// at most 1e-26 |n|. The reduction by multiples of pi/2 uses pi/2 in two parts (Cody and Waite). This reduction is
-/// skipped if no lane needs it; the results are the same to the last bit.
+/// Sine and cosine for |x| < 100, within 2 ulp (units in the last place), except near a zero at n pi/2 (n not 0), where
+/// the absolute error is at most 1e-26 |n|. The reduction by multiples of pi/2 uses pi/2 in two parts (Cody and Waite).
+/// This reduction is skipped if no lane needs it; the results are the same to the last bit.
 template <class T>
 inline SinCos<T> sin_cos(T x) {
   constexpr double kTwoOverPi = 0.63661977236758134308;
   constexpr double kHalfPiHigh = 1.57079632673412561417e+00;  // the first 33 bits of pi/2
-  constexpr double kHalfPiLow = 6.07710050650619224932e-11;   // the remaining bits of pi/2
+  constexpr double kHalfPiLow = 6.07710050650619224932e-11;   // the next bits of pi/2
   const T quarters = x * T(kTwoOverPi);
   if (!any(!(abs(quarters) < T(0.5)))) return sin_cos_near_zero(x);
   const T n = nearest(quarters);

@@ -28,8 +28,9 @@ enum class Fidelity : std::size_t {
   /// The closure of all limbs for errors and rotations of finite size (ClosureSolver), which starts from the
   /// first-order motion (ClosureStart).
   exact,
-  /// [theta; dr] = J^-1 G eps (San et al. 2023, Eq. 18, corrected): one matrix for each block, and one vectorised
-  /// product for each sample (map_tile). Every sample converges in one iteration, or is singular at a singular pose.
+  /// [theta; dr] = J^-1 G eps (San et al. 2023, Eq. 18, corrected): one matrix J^-1 G for each pose, and one
+  /// vectorised product for each sample (map_tile). A finite sample converges in one iteration; at a singular pose all
+  /// samples are singular.
   first_order
 };
 

@@ -65,7 +65,7 @@ class LoadSolver : protected UnitSolver {
   }
   bool is_calibrated() const { return calibrator_ != nullptr; }  ///< Whether machines are calibrated.
 
-  /// Draws for this pose the errors that machines draw anew at each pose. Returns the positions of these errors.
+  /// Draws for this pose the errors that machines draw anew at each pose. Returns their indices in Plan::factors().
   std::span<const std::size_t> draw_per_pose(PoseIndex pose, std::span<const std::size_t> machines) {
     const std::span<const std::size_t> errors = plan_->per_pose();
     if (errors.empty()) return errors;

@@ -28,14 +28,15 @@ inline constexpr std::size_t kDrawsAmongOthers = 64;
 /// Measures the mean squares at the plan's errors.
 ///
 /// Let y be a response minus the centre of its limit (RelativeLimits::centre()). An error e of mean mu and standard
-/// deviation sigma adds y(mu + sigma)^2 / 2 + y(mu - sigma)^2 / 2 - y(c)^2 to the mean square of y. The centre c of the
-/// error (Distribution::centre()) is mu, but 0 for measured or given values. The formula is exact if y is linear in
-/// e, or the norm of a linear function. Let o be the value of the formula with all other errors at their centres, and t
+/// deviation sigma adds y(mu + sigma)^2 / 2 + y(mu - sigma)^2 / 2 - y(c)^2 to the mean square of y, where the argument
+/// of y is e, and all other errors are fixed. The centre c of the error (Distribution::centre()) is mu, but 0 if the
+/// values of the error are measured or given in a table. The formula is exact if y is linear in e, or the norm of a
+/// linear function. Let o be the value of the formula with all other errors at their centres, and t
 /// its average over the first `draws` draws of the other errors. If errors interact in pairs, the interactions of this
 /// error add the difference `t - o`. Each interaction belongs to two errors, so half of it is counted for each. Below,
-/// y(c) is y with all errors at their centres, and the sum is over the errors:
+/// y_0 is y with all errors at their centres, and the sum is over the errors:
 ///
-///     value = y(c)^2 + sum of (o + t) / 2,     slope = max(0, t) / sigma^2.
+///     value = y_0^2 + sum of (o + t) / 2,     slope = max(0, t) / sigma^2.
 ///
 /// If errors do not interact, or if draws = 0, t = o, so the value has no sampling noise. For a limit on a spread, y is
 /// the response minus its mean over the poses, and t is always o. If the mechanism is not solved at one of the three

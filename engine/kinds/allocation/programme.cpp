@@ -20,7 +20,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// the error changes (Model::error_bound).
 constexpr double kShareOfPart = 0.25;
 
-/// The standard deviation (SI) that is used instead of 0. It is so small that no solve can distinguish it from 0.
+/// The standard deviation (SI) of an error whose tolerance is 0. It is so small that no solve can distinguish it from
+/// 0.
 constexpr double kPerfect = 1e-18;
 
 /// The upper bound (SI) on the tolerance of a part for which the study states none.

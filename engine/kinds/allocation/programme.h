@@ -87,9 +87,9 @@ class ToleranceProgramme {
   /// none, its lowest tolerance.
   TolerancePoint at_most(std::span<const double> tolerance) const;
   TolerancePoint lowest() const;  ///< The lowest tolerances.
-  /// The point with each tolerance rounded down as the study asks for its part. No standard deviation grows: a finer
-  /// zone of orientation would leave more of the zone of location to the middle of the feature, so the zone of location
-  /// is made finer as well before it is rounded.
+  /// The point with each tolerance rounded down as the study asks for its part. No standard deviation grows. If a
+  /// zone of orientation is rounded down, the tilt uses less of the zone of location, and the middle of the feature
+  /// could use more. So the zone of location is made finer as well before it is rounded.
   TolerancePoint rounded(const TolerancePoint& point) const;
   /// The point with one part coarser: its tolerance multiplied by `factor`, or its next larger value. A zone of
   /// orientation may also be made so wide that the drawing does not need it. None if the part can have no larger

@@ -82,8 +82,9 @@ class VariationEvaluator : private LoadSolver {
   }
 
  private:
-  /// Solves all machines of a piece with each variation at all poses. Used for limits that are judged from several
-  /// poses together, and for calibrated machines, whose calibration takes more time than the solves at all poses.
+  /// Solves all machines of a piece of work at all poses, once with each variation. Used for limits that are judged
+  /// from several poses together, and for calibrated machines, whose calibration takes more time than the solves at all
+  /// poses.
   VariedLoads solve_all(std::size_t piece) {
     VariedLoads found{&varied_, {}, varied_.loads_of(piece) * plan_->poses().size()};
     std::vector<double> loads(count_);

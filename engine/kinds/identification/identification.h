@@ -21,8 +21,10 @@ struct ErrorSize {
 
 /// The options of an identification study.
 struct IdentificationOptions {
-  std::vector<ErrorSize> groups;  ///< pairs of sizes; each pair gives its own verdicts
-  double pose_share = 0.95;       ///< share of the poses at which a verdict must hold
+  /// [groups] Sizes at which errors are tried. For each group the study finds which errors deform the mechanism.
+  std::vector<ErrorSize> groups;
+  double pose_share =
+      0.95;  ///< share of the poses at which an error must deform nothing, so as not to count as deforming
 };
 
 /// The kind of study that identifies which errors deform the mechanism at all.
@@ -30,7 +32,7 @@ extern const StudyKind kIdentificationStudy;
 
 /// Two errors of one frame that deform the mechanism only together.
 struct Coupling {
-  std::size_t group;              ///< index of the pair of sizes
+  std::size_t group;              ///< index in IdentificationOptions::groups
   std::size_t first;              ///< index of the first error among the study's factors
   std::size_t second;             ///< index of the second error among the study's factors
   std::uint64_t deforming_poses;  ///< number of poses at which both together deform the mechanism

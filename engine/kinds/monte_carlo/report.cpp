@@ -114,9 +114,10 @@ std::vector<double> at_poses(const MonteCarloResult::QuantilesAtPoses& quantiles
   return values;
 }
 
-/// The poses at which the highest quantile of a response is largest.
+/// The pose at which the quantile of a response of the highest level is largest, and other poses at which the samples
+/// do not show it to be smaller.
 struct WorstPoses {
-  std::vector<double> quantile;  ///< [poses] highest quantile at each pose
+  std::vector<double> quantile;  ///< [poses] quantile of the highest level
   std::size_t worst;             ///< pose with the largest quantile
   double low;                    ///< lower end of the interval of this quantile
   double high;

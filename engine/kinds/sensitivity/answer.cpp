@@ -106,7 +106,8 @@ class Family {
   std::vector<std::size_t> members_;
 };
 
-/// Finds the errors that FewMatter lists. None if an effect is not known, or if no error has an effect.
+/// Finds the errors that cause most of the mean square, and those that cause hardly any of it (FewMatter). None if an
+/// effect is not known, or if no error has an effect.
 std::optional<FewMatter> few_matter(const StoredResult& result) {
   const std::size_t response = response_named(result, default_ranking(result));
   const MeanSquare found =

@@ -44,7 +44,8 @@ std::optional<SensitivityResult::Indices> index_changes(const Plan& plan, const 
 /// The number of solves that index_changes() makes.
 double index_change_solves(const Plan& plan);
 
-/// A table cell with the relative change of an index at a tenth of the size, for a percent_column().
+/// A table cell with the relative change of an index if the error is a tenth as large (index_changes()), for a
+/// percent_column().
 Cell change_cell(double change);
 
 /// The errors that have an effect on the response and whose index changes with size, the largest change first.

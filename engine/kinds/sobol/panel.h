@@ -217,7 +217,7 @@ class PanelEvaluator {
   /// Squared difference, at the present pose, of A and the mixture that takes this subset of groups from A and all
   /// others from B.
   OfSamples<axis::GroupSubset, axis::Response> differences_;
-  Flags all_count_;  ///< whether all mixtures of each sample count at the present pose
+  Flags all_count_;  ///< [samples] 1 if all mixtures of the sample enter the sums at the present pose
   /// Shapley effects times variance, summed over the poses.
   OfSamples<axis::Response, axis::ErrorGroup> shapley_;
   /// Squared difference of A and B, summed over the poses at which all mixtures count (all_count_).

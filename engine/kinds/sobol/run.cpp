@@ -84,7 +84,7 @@ struct PanelTree {
   }
 };
 
-/// The job of a UnitFold (run/unit_fold.h), whose units are samples of the panel at all poses (PanelUnit).
+/// The job of a UnitFold (run/unit_fold.h), whose units are samples (A, B and their mixtures, IndexPanel) at all poses.
 struct PanelJob {
   const Plan& plan;
   const Model& model;
