@@ -28,6 +28,7 @@ format = "poesy-study"
 version = 1
 mechanism.file = "{GALLERY / "3-rrr/3-rrr.toml"}"
 poses = {{ select = "grid", count = {{ x = 3, y = 3, phi = 1 }}, workspace = {{ x = ["-0.1 m", "0.1 m"], y = ["-0.1 m", "0.1 m"], phi = ["-1 deg", "1 deg"] }} }}
+errors.linear = {{ distribution = "normal", sigma = "1 mm" }}
 analysis = {{ kind = "monte-carlo", factors = ["delta_1_1_x"], samples = 10 }}
 """
 # A study with a limit that no pose keeps.
