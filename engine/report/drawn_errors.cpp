@@ -77,6 +77,10 @@ std::string given_errors_text(const StoredResult& result) {
       given, counted(all, "error", "errors"), all - given);
 }
 
+bool is_drawn_per_pose(const StoredResult& result, std::size_t error) {
+  return !result.factor_draws.empty() && result.factor_draws[error] == name(Draws::per_pose);
+}
+
 std::string seed_text(const StoredResult& result, const StudyWords& words) {
   if (!words.draws) return {};
   return words.seed ? std::to_string(*words.seed) : readable_setting(result.study_text, "run", "seed");

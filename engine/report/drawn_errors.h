@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ std::vector<std::string> drawn_sizes(const StoredResult& result, const StudyWord
 /// A text with the number of errors that errors.machines gives, and the number that is drawn; empty if the study has no
 /// errors.machines.
 std::string given_errors_text(const StoredResult& result);
+
+/// Returns true if a machine draws this error anew at each pose. error: index of the error in the result.
+bool is_drawn_per_pose(const StoredResult& result, std::size_t error);
 
 /// The seed with which the errors of the result were drawn, as text; empty if no errors are drawn.
 std::string seed_text(const StoredResult& result, const StudyWords& words);

@@ -137,7 +137,7 @@ std::string draws_of_machines(const StoredResult& result) {
   for (std::size_t p = 0; p < result.factor_draws.size(); ++p) {
     if (p < result.factor_sigma.size() && !(result.factor_sigma[p] > 0.0)) continue;
     ++drawn;
-    if (result.factor_draws[p] == "per pose") anew.push_back(result.factors[p].name);
+    if (is_drawn_per_pose(result, p)) anew.push_back(result.factors[p].name);
   }
   if (anew.empty()) return ", each with one set of errors at all poses";
   if (anew.size() == drawn) return ", each with new errors at every pose";

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/report/display.h"
+#include "engine/report/drawn_errors.h"
 #include "engine/study/study.h"
 
 namespace poesy {
@@ -63,18 +64,13 @@ bool explains_poses(const std::string& name, const std::string& in_a, const std:
   return is_of_file && in_a == in_b;
 }
 
-/// Returns true if the machines of result `of` draw its error p anew at each pose.
-bool is_per_pose(const StoredResult& of, std::size_t p) {
-  return !of.factor_draws.empty() && of.factor_draws[p] == name(Draws::per_pose);
-}
-
 /// Adds to `others` the errors that both results have, but that only one of the results draws anew at each pose.
 void add_draws_of_errors(const StoredResult& a, const StoredResult& b, std::vector<OtherRequirement>& others) {
   std::vector<std::string> only_in_a;
   std::vector<std::string> only_in_b;
   for (const auto& [p, q] : common(names_of(a.factors), names_of(b.factors))) {
-    if (is_per_pose(a, p) == is_per_pose(b, q)) continue;
-    (is_per_pose(a, p) ? only_in_a : only_in_b).push_back(a.factors[p].name);
+    if (is_drawn_per_pose(a, p) == is_drawn_per_pose(b, q)) continue;
+    (is_drawn_per_pose(a, p) ? only_in_a : only_in_b).push_back(a.factors[p].name);
   }
   const auto add = [&](const std::vector<std::string>& errors, Draws in_a, Draws in_b) {
     if (errors.empty()) return;

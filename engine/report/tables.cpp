@@ -352,7 +352,7 @@ std::optional<Table> stated_table(const StoredResult& result) {
   };
   std::vector<std::size_t> stated;
   for (std::size_t p = 0; p < result.factors.size(); ++p) {
-    if (mean(p) != 0.0 || draws(p) == name(Draws::per_pose)) stated.push_back(p);
+    if (mean(p) != 0.0 || is_drawn_per_pose(result, p)) stated.push_back(p);
   }
   if (stated.empty()) return std::nullopt;
   Table table{.name = "stated_errors",

@@ -11,6 +11,7 @@
 #include "engine/base/units.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/report/display.h"
+#include "engine/report/drawn_errors.h"
 
 namespace poesy {
 namespace {
@@ -51,8 +52,7 @@ std::string_view remedy_text(const std::vector<UnallocatedError>& errors) {
   }
   return std::ranges::any_of(errors, &UnallocatedError::is_per_pose)
              ? "a part of [[analysis.parts]] that names them finds the tolerances of those that a machine does not "
-               "draw "
-               "anew at each pose"
+               "draw anew at each pose"
              : "a part of [[analysis.parts]] that names them finds their tolerances";
 }
 
@@ -85,8 +85,8 @@ std::vector<UnallocatedError> errors_in_no_part(const StoredResult& result) {
   std::vector<UnallocatedError> errors;
   for (std::size_t p = 0; p < result.factors.size(); ++p) {
     if (members.contains(result.factors[p].name)) continue;
-    const bool is_per_pose = !result.factor_draws.empty() && result.factor_draws[p] == name(Draws::per_pose);
-    errors.push_back({result.factors[p], result.factor_distribution[p], result.factor_sigma[p], is_per_pose});
+    errors.push_back(
+        {result.factors[p], result.factor_distribution[p], result.factor_sigma[p], is_drawn_per_pose(result, p)});
   }
   return errors;
 }

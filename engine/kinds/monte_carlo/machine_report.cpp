@@ -13,6 +13,7 @@
 #include "engine/kinds/monte_carlo/yield.h"
 #include "engine/report/display.h"
 #include "engine/report/drawing_table.h"
+#include "engine/report/drawn_errors.h"
 #include "engine/stats/first_order.h"
 #include "engine/stats/main_effects.h"
 
@@ -137,9 +138,7 @@ std::string indices_note(const StoredResult& result, std::size_t r) {
 
 /// Whether an error has a main-effect curve. An error that machines draw anew at each pose has none, because a mean
 /// over the poses does not depend on one value of the error.
-bool has_curve(const StoredResult& result, std::size_t p) {
-  return result.factor_draws.empty() || result.factor_draws[p] != name(Draws::per_pose);
-}
+bool has_curve(const StoredResult& result, std::size_t p) { return !is_drawn_per_pose(result, p); }
 
 /// Charts of main-effect curves, a panel for each response that a summary shows. The errors with the largest indices
 /// come first.
