@@ -232,7 +232,10 @@ int calibrate_machine(const CalibrateOptions& options) {
         "puts it: such an estimate is under that assumption");
   }
   for (const std::string& warning : made.warnings) say(Message::warning, warning);
-  for (const std::string& warning : calibration_warnings(made.result)) say(Message::warning, warning);
+  const bool converged = made.result.converged != 0;
+  if (converged) {
+    for (const std::string& warning : calibration_warnings(made.result)) say(Message::warning, warning);
+  }
   StoredResult result = described(study, *model, predicted);
   result.kind = kCalibrationKind.study.name;
   result.found = std::move(made.result);
@@ -241,10 +244,8 @@ int calibrate_machine(const CalibrateOptions& options) {
     write_result(path, kCalibrationKind.study.name, kCalibrationFile, study, predicted, result.found,
                  run_facts(seconds_since(start), threads, made.solves));
   }
-  if (made.converged) return kDone;
-  return complain(options.measured +
-                      ": the fit did not converge, so nothing of it is to be typed in; look at the units of its "
-                      "columns, fit fewer errors, or take prior = \"tolerances\"",
+  if (converged) return kDone;
+  return complain(fmt::format("{}: {}; {}", options.measured, kNotConverged, kNotConvergedRemedy),
                   kTooManyNotConverged);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -61,16 +62,30 @@ void add_first_order_notes(const StoredResult& result, std::vector<Table>& table
   }
 }
 
+/// Removes the errors that no table names from a table of errors, unless no error would remain.
+void keep_named(const std::vector<Table>& tables, Table& errors) {
+  const auto is_named = [&](const std::vector<Cell>& error) {
+    const auto has_it = [&](const std::vector<Cell>& row) {
+      return std::ranges::find(row, error.front().text, &Cell::text) != row.end();
+    };
+    return std::ranges::any_of(tables, [&](const Table& table) { return std::ranges::any_of(table.rows, has_it); });
+  };
+  if (std::ranges::none_of(errors.rows, is_named)) return;
+  std::erase_if(errors.rows, [&](const std::vector<Cell>& error) { return !is_named(error); });
+}
+
 /// The tables that `poesy show` prints, with all columns, and the tables of the names of coordinates, errors and
-/// responses with their meanings.
+/// responses with their meanings. With --top, the table of errors has only those that another table names.
 std::vector<Table> printed_tables(const ExportOptions& options, StoredResult& result) {
   const std::string response = choose_response(options.response, options.result, result);
   std::vector<Table> tables = result_tables(kind_of(result).report, result, {response});
   if (options.top) keep_first(*options.top, tables);
   add_first_order_notes(result, tables);
-  for (Table& table : name_tables(result)) {
-    if (!table.rows.empty()) tables.push_back(std::move(table));
+  std::vector<Table> names = name_tables(result);
+  for (Table& table : names) {
+    if (options.top && table.name == kErrorsTable) keep_named(tables, table);
   }
+  std::ranges::copy_if(names, std::back_inserter(tables), [](const Table& table) { return !table.rows.empty(); });
   return tables;
 }
 

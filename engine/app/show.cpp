@@ -75,7 +75,9 @@ std::string study_lines(const StoredResult& result, std::size_t width) {
   if (!study) return {};
   const std::unique_ptr<Model> model = build_model(study->mechanism);
   std::vector<std::string> lines = model->remarks();
-  for (const std::string& doubt : mechanism_doubts(study->mechanism, *model)) lines.push_back("warning: " + doubt);
+  std::vector<std::string> doubts = mechanism_doubts(study->mechanism, *model);
+  if (std::string doubt = zones_doubt(*study); !doubt.empty()) doubts.push_back(std::move(doubt));
+  for (const std::string& doubt : doubts) lines.push_back("warning: " + doubt);
   const StudyWords words = kind_of(result).report.words(result);
   if (words.own_poses) {
     for (const std::string& doubt : workspace_doubts(*study, result.poses)) lines.push_back("warning: " + doubt);

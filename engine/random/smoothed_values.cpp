@@ -79,7 +79,7 @@ void SmoothedValues::add_pieces() {
   }
   std::ranges::sort(spreads, {}, [](const Spread& spread) { return std::pair(spread.low, spread.high); });
   std::ranges::sort(ends);
-  ends.erase(std::ranges::unique(ends).begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   double below = 0.0;  // number of values below the knot; a value counts by the share of its range that is below
   const auto add_knot = [&](double x) {
     knots_.push_back(x);
@@ -119,7 +119,7 @@ double SmoothedValues::quantile(double u) const {
 }
 
 double SmoothedValues::share(double x) const {
-  const auto [first, last] = std::ranges::equal_range(knots_, x);
+  const auto [first, last] = std::equal_range(knots_.begin(), knots_.end(), x);
   const auto at = static_cast<std::size_t>(first - knots_.begin());
   const auto above = static_cast<std::size_t>(last - knots_.begin());
   if (at < above) return 0.5 * (shares_[at] + shares_[above - 1]);

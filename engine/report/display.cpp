@@ -101,8 +101,9 @@ std::string metric_text(const StoredResult& result) {
     return fmt::format("platform, by displacement of {}", counted(result.metric_points.size(), "point", "points"));
   }
   if (result.metric == "stiffness") {
-    return "stiffness: equilibrium of the bodies, without masses of limbs and without geometric stiffness; forces of "
-           "exact solves are good to two digits";
+    return std::string(
+               "stiffness: equilibrium of the bodies, without masses of limbs and without geometric stiffness") +
+           (is_first_order(result) ? "" : "; forces of exact solves are good to two digits");
   }
   if (result.metric == "published") return "published, radians against metres at the base's origin";
   return result.metric;

@@ -136,14 +136,15 @@ std::string preamble(const Table& table, const std::vector<ColumnLayout>& layout
 std::string comments(bool is_long, bool has_paragraphs, const std::vector<std::string>& missing, double millimetres) {
   std::string text = fmt::format("% needs \\usepackage{{{}booktabs{}}}\n", has_paragraphs ? "array," : "",
                                  is_long ? ",longtable" : "");
+  if (is_long) text += "% in two columns: \\onecolumn before it, or --top N for a table with fewer rows\n";
   if (missing.empty()) return text;
   return text + fmt::format("% {:g} mm have no room for: {}\n", millimetres,
                             latex_text(fmt::format("{}", fmt::join(missing, ", "))));
 }
 
-Table named_table(const char* name, const char* word, const char* caption, const std::vector<NamedUnit>& things) {
+Table named_table(std::string_view name, const char* word, const char* caption, const std::vector<NamedUnit>& things) {
   Table table{
-      .name = name,
+      .name = std::string(name),
       .caption = caption,
       .columns = {text_column("name", word), text_column("unit", "unit"), text_column("description", "what it is")}};
   for (const NamedUnit& thing : things) {
@@ -188,7 +189,7 @@ std::string latex_of(const Table& whole, double millimetres) {
 
 std::vector<Table> name_tables(const StoredResult& result) {
   return {named_table("coordinates", "coordinate", "Coordinates of a pose", result.pose_coordinates),
-          named_table("errors", "error", "Errors", result.factors),
+          named_table(kErrorsTable, "error", "Errors", result.factors),
           named_table("responses", "response", "Responses", result.responses)};
 }
 

@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/report/table.h"
@@ -17,6 +18,9 @@ namespace poesy {
 /// digits. Columns that do not fit (fitted()) are left out, and so are the notes on them. The first lines are comments
 /// with the packages that are needed and the columns that do not fit. millimetres: width of the table.
 std::string latex_of(const Table& table, double millimetres);
+
+/// The name of the table of errors in name_tables().
+inline constexpr std::string_view kErrorsTable = "errors";
 
 /// Tables of the pose coordinates, the errors and the responses of a result, with units and descriptions.
 std::vector<Table> name_tables(const StoredResult& result);

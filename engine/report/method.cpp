@@ -219,9 +219,12 @@ std::string limits_sentence(const StoredResult& result) {
 
 std::string repeat_sentence(const StoredResult& result, const StudyWords& words) {
   const std::string seed = seed_text(result, words);
-  return fmt::format("{}The same study gives the same bits on any number of threads (SHA-256 of the result: {}).",
-                     seed.empty() ? "" : fmt::format("Draws are addressed by the seed {} (Philox). ", seed),
-                     result.content_sha256);
+  constexpr std::size_t kDigits = 12;  // enough to tell results apart; a line of 85 mm has no room for all 64
+  return fmt::format(
+      "{}The same study gives the same bits on any number of threads (the SHA-256 of the result begins "
+      "with {}).",
+      seed.empty() ? "" : fmt::format("Draws are addressed by the seed {} (Philox). ", seed),
+      result.content_sha256.substr(0, kDigits));
 }
 
 /// The text and the sources that the kind of study adds to the method; empty if it adds nothing.

@@ -54,6 +54,14 @@ std::string direction_in_base(const SketchedFrame& frame, std::size_t axis) {
   return text == direction_text(of_base) ? std::string() : ", " + text + " in the base at home";
 }
 
+/// Like joint_words(), followed by the joint's name in the mechanism's file: "U joint 1 (A)".
+std::string named_joint_words(const Sketch& sketch, std::size_t limb, std::size_t joint) {
+  const std::string words = joint_words(sketch, limb, joint);
+  const std::vector<SketchedJoint>& joints = sketch.limbs[limb];
+  if (joint == 0 || joint > joints.size() || joints[joint - 1].name.empty()) return words;
+  return fmt::format("{} ({})", words, joints[joint - 1].name);
+}
+
 }  // namespace
 
 std::string joint_words(const Sketch& sketch, std::size_t limb, std::size_t joint) {
@@ -69,8 +77,9 @@ std::string name_words(const SketchedJoint& joint) {
 }
 
 std::string between_words(const Sketch& sketch, std::size_t limb, std::size_t after, std::size_t before) {
-  if (after == before) return "inside " + joint_words(sketch, limb, after);
-  return fmt::format("between {} and {}", joint_words(sketch, limb, after), joint_words(sketch, limb, before));
+  if (after == before) return "inside " + named_joint_words(sketch, limb, after);
+  return fmt::format("between {} and {}", named_joint_words(sketch, limb, after),
+                     named_joint_words(sketch, limb, before));
 }
 
 std::string axis_words(const Sketch& sketch, const SketchedError& error, std::string_view name,

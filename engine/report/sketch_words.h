@@ -17,8 +17,8 @@ std::string joint_words(const Sketch& sketch, std::size_t limb, std::size_t join
 /// The name of a joint in the mechanism's file, with the name of its drive if it has one: "q", "q, driven by motor_1".
 std::string name_words(const SketchedJoint& joint);
 
-/// The part of a limb between the joints `after` and `before` in words: "between the base and U joint 1", "inside U
-/// joint 1". Joints are counted as in SketchedError.
+/// The part of a limb between the joints `after` and `before` in words: "between the base and U joint 1 (A)", "inside
+/// U joint 1 (A)", with the names of joints in the mechanism's file. Joints are counted as in SketchedError.
 std::string between_words(const Sketch& sketch, std::size_t limb, std::size_t after, std::size_t before);
 
 /// How an error displaces its part: "displacement along x of the base", "rotation about x of frame 4, (0.6, 0, 0.8) in

@@ -35,6 +35,16 @@ inline constexpr std::string_view kDu = R"(@article{du2022,
 }
 )";
 
+/// The source of intervals of sums of two estimates, used for indices over the workspace (stats/indices.h).
+inline constexpr std::string_view kZouDonner = R"(@article{zou2008,
+  author = {Zou, Guang Yong and Donner, Allan},
+  title = {Construction of confidence limits about effect measures: A general approach},
+  journal = {Statistics in Medicine},
+  volume = {27}, number = {10}, pages = {1693--1702}, year = {2008},
+  doi = {10.1002/sim.3095}
+}
+)";
+
 /// The source of first-order and total indices from squared differences (stats/squared_differences.h).
 inline constexpr std::string_view kJansen = R"(@article{jansen1999,
   author = {Jansen, Michiel J. W.},

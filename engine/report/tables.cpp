@@ -223,7 +223,7 @@ std::string constant_text(const NamedUnit& response) {
 }
 
 std::vector<std::size_t> varying_first(const StoredResult& result, std::vector<std::size_t> responses) {
-  std::ranges::stable_partition(responses, [&](std::size_t r) { return varies(result, r); });
+  std::stable_partition(responses.begin(), responses.end(), [&](std::size_t r) { return varies(result, r); });
   return responses;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cctype>
 #include <limits>
 
@@ -135,7 +136,13 @@ const StudyKey* StudyTable::find(std::string_view key, std::string_view word) co
   return first == keys.end() ? nullptr : &*first;
 }
 
-std::vector<std::string_view> StudyTable::names() const { return poesy::names(keys); }
+std::vector<std::string_view> StudyTable::names() const {
+  std::vector<std::string_view> list;
+  for (const StudyKey& key : keys) {
+    if (std::ranges::find(list, key.name) == list.end()) list.push_back(key.name);
+  }
+  return list;
+}
 
 bool StudyTable::has_names_of_model() const { return std::ranges::any_of(keys, is_name_of_model); }
 

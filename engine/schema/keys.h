@@ -55,7 +55,7 @@ struct StudyTable {
   /// The key of this name; null if the table has none. Several keys may have the same name if they apply with different
   /// words of the chooser. The result is then the one that applies with `word`, or the first one if none does.
   const StudyKey* find(std::string_view key, std::string_view word = {}) const;
-  std::vector<std::string_view> names() const;  ///< The names of the keys, in order.
+  std::vector<std::string_view> names() const;  ///< The names of the keys, each once, in order.
   bool has_names_of_model() const;              ///< Returns true if a key is a placeholder for names of the model.
   /// The setting of the chooser as messages name it, for a key that does not apply with this word: `select = "grid"`.
   std::string owner_of(std::string_view word) const;

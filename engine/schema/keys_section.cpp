@@ -113,12 +113,27 @@ constexpr std::array kExpectedKeys{ExpectedKey{
     "write linear = { distribution = \"uniform\", half_width = \"0.02 mm\" }, and angular = { distribution = "
     "\"uniform\", half_width = \"0.02 deg\" }"}};
 
+/// The path of the only table of the file, not inside another one, that has this key; empty if none or several have it.
+std::string_view table_with(std::string_view key, const StudyTables& tables) {
+  std::string_view found;
+  for (const StudyTable& table : tables) {
+    const std::string_view path = table.paths.front();
+    if (path.empty() || path.find_first_of(".[") != std::string_view::npos || table.find(key) == nullptr) continue;
+    if (!found.empty()) return {};
+    found = path;
+  }
+  return found;
+}
+
 /// What to write instead of an unknown key of a table.
-std::string remedy_for_unknown(std::string_view table, std::string_view key, std::span<const std::string_view> known) {
+std::string remedy_for_unknown(std::string_view table, std::string_view key, std::span<const std::string_view> known,
+                               const StudyTables& tables) {
   const auto expected = std::ranges::find_if(kExpectedKeys, [&](const ExpectedKey& one) {
     return one.table == table && one.key == key && std::ranges::find(known, one.beside) != known.end();
   });
-  return expected == kExpectedKeys.end() ? suggestion(key, known) : std::string(expected->remedy);
+  if (expected != kExpectedKeys.end()) return std::string(expected->remedy);
+  const std::string_view owner = nearest(key, known).empty() ? table_with(key, tables) : std::string_view();
+  return owner.empty() ? suggestion(key, known) : fmt::format("it is a key of [{}]", owner);
 }
 
 }  // namespace
@@ -270,7 +285,7 @@ void StudySection::allow(std::span<const std::string_view> known, std::string_vi
   for (const std::string& key : keys()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     throw InputError(place_of_key(key), "unknown " + std::string(what) + " '" + printable(key) + "'" + where(),
-                     remedy_for_unknown(name_, key, known));
+                     remedy_for_unknown(name_, key, known, *tables_));
   }
 }
 

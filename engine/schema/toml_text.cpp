@@ -68,7 +68,9 @@ std::string_view rest_of_line(const std::vector<std::string_view>& lines, const 
 /// The value at this place of a line if it is a word without quotes, as in `select = boundary` or `[gap, x]`; otherwise
 /// empty. rest: the part of the line from a place inside the word on.
 std::string_view bare_word(std::string_view line, std::string_view rest) {
-  const auto is_of_word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+  const auto is_of_word = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+  };
   std::size_t begin = line.size() - rest.size();
   std::size_t end = begin;
   while (begin > 0 && is_of_word(line[begin - 1])) --begin;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <ranges>
 
 #include "engine/base/contract.h"
 #include "engine/base/instruction_sets.h"
@@ -147,11 +146,17 @@ bool fits(const BucketScale& scale, const Extremes& extremes) {
 }
 
 BucketScale finest_fitting(const Extremes& extremes) {
-  const unsigned least = least_octave(extremes);
-  const auto octaves = std::views::iota(least, BucketScale::kCoarsest);
-  const auto too_fine = [&](unsigned octave) { return !fits(BucketScale(octave), extremes); };
-  const auto before = std::ranges::partition_point(octaves, too_fine) - octaves.begin();
-  return BucketScale(least + static_cast<unsigned>(before));
+  unsigned octave = least_octave(extremes);
+  unsigned fitting = BucketScale::kCoarsest;
+  while (octave < fitting) {
+    const unsigned middle = octave + (fitting - octave) / 2;
+    if (fits(BucketScale(middle), extremes)) {
+      fitting = middle;
+    } else {
+      octave = middle + 1;
+    }
+  }
+  return BucketScale(fitting);
 }
 
 }  // namespace poesy

@@ -13,9 +13,8 @@ namespace {
 
 namespace policies = boost::math::policies;
 /// The binomial distribution of a number B. Its quantile p is the smallest k with P(B <= k) >= p.
-using Binomial =
-    boost::math::binomial_distribution<double,
-                                       policies::policy<policies::discrete_quantile<policies::integer_round_up>>>;
+using Binomial = boost::math::binomial_distribution<
+    double, policies::policy<policies::discrete_quantile<policies::integer_round_up>, policies::promote_double<false>>>;
 
 /// The bucket that contains the value of this rank. Precondition: 1 <= rank <= number of values.
 const Bucket& bucket_of(std::span<const Bucket> buckets, std::uint64_t rank) {

@@ -33,8 +33,8 @@ double reach(const Estimate& estimate, const Interval& bounds) {
 }  // namespace
 
 std::vector<bool> told_together(std::span<const Estimate> estimates, const Interval& bounds, double freedom,
-                                double conf_level) {
-  POESY_EXPECTS(conf_level > 0.0 && conf_level < 1.0);
+                                std::span<const double> zero_sd, double conf_level) {
+  POESY_EXPECTS(conf_level > 0.0 && conf_level < 1.0 && zero_sd.size() == estimates.size());
   std::vector<bool> told(estimates.size(), false);
   if (!(freedom >= 1.0)) return told;
   struct Test {
@@ -42,11 +42,14 @@ std::vector<bool> told_together(std::span<const Estimate> estimates, const Inter
     double reach;
   };
   std::vector<Test> tests;
+  const double one = two_sided_student_quantile(freedom, conf_level);
   for (std::size_t p = 0; p < estimates.size(); ++p) {
-    if (is_tested(estimates[p])) tests.push_back({p, reach(estimates[p], bounds)});
+    if (!is_tested(estimates[p])) continue;
+    const double from_zero =
+        zero_sd[p] > 0.0 ? std::abs(estimates[p].value) / (one * zero_sd[p]) : std::numeric_limits<double>::infinity();
+    tests.push_back({p, std::min(reach(estimates[p], bounds), from_zero)});
   }
   std::ranges::stable_sort(tests, std::ranges::greater(), &Test::reach);
-  const double one = two_sided_student_quantile(freedom, conf_level);
   for (std::size_t k = 0; k < tests.size(); ++k) {
     const auto others = static_cast<double>(tests.size() - k);
     if (tests[k].reach * one < two_sided_student_quantile(freedom, 1.0 - (1.0 - conf_level) / others)) break;

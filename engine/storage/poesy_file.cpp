@@ -46,6 +46,9 @@ h5::File open_hdf5(const std::string& path) {
       throw FileError(path, "is a checkpoint of a run that has not ended, not a result",
                       "continue the run with poesy run --resume");
     }
+    if (path.ends_with(".toml")) {
+      throw FileError(path, "is not a result", "if it is a study, run it (poesy run) and give its result");
+    }
     throw FileError(path, std::string("is not an intact HDF5 file: ") + error.what(), kOther);
   }
 }

@@ -31,9 +31,10 @@ double size_of_unit(const CsvCell& cell, const CsvTitle& title, Dimension dimens
   const Unit* unit = find_unit(*title.unit);
   if (unit != nullptr && unit->dimension == dimension) return unit->si;
   if (const auto share = ratio_unit(*title.unit); share && dimension == Dimension::number) return *share;
-  const std::string problem =
-      unit == nullptr ? "an unknown unit"
-                      : fmt::format("a unit of {}, but this column is a {}", name(unit->dimension), name(dimension));
+  const std::string problem = unit == nullptr
+                                  ? "an unknown unit"
+                                  : fmt::format("a unit of {}, but this column is {} {}", name(unit->dimension),
+                                                dimension == Dimension::angle ? "an" : "a", name(dimension));
   throw InputError(cell.place, fmt::format("column '{}' has {}", printable(cell.text), problem),
                    fmt::format("write one of: {}, or leave it out for SI", unit_names(dimension)));
 }

@@ -847,9 +847,28 @@ static std::string default_text(std::span<const FactorIndex> errors, Dimension d
                      error_text({default_distribution(dimension)}, dimension, readable_value), error_kind(dimension));
 }
 
+/// Name of the first feature with a zone of which an error varies with the size of all lengths; empty if there is none.
+/// of_parts: errors whose sizes an allocation finds.
+static std::string feature_without_zone(const Study& study, const StudySection& errors,
+                                        std::span<const FactorIndex> of_parts) {
+  const StudySection overrides = errors.section("override");
+  for (const Feature& feature : study.model().features) {
+    if (study.errors.zones || (!feature.location && !feature.orientation)) continue;
+    for (const FactorIndex error : feature.errors()) {
+      const bool varies = std::ranges::find(study.analysis.factors, error) != study.analysis.factors.end();
+      const bool is_of_part = std::ranges::find(of_parts, error) != of_parts.end();
+      const bool has_own_size =
+          is_given(study, error.value) || override_of(overrides, study.model().factors[error.value].name);
+      if (varies && !is_of_part && !has_own_size) return feature.name;
+    }
+  }
+  return {};
+}
+
 void check_error_sizes(Study& study, const Reading& reading, std::span<const FactorIndex> of_parts) {
-  if (reading.use != StudyUse::run) return;
   const StudySection errors = reading.root.section("errors");
+  study.errors.unused_zone = feature_without_zone(study, errors, of_parts);
+  if (reading.use != StudyUse::run) return;
   const std::vector<std::optional<Distribution>> by_zones = distributions_by_zones(study);
   std::vector<FactorIndex> without_size;
   std::ranges::copy_if(study.analysis.factors, std::back_inserter(without_size), [&](FactorIndex error) {

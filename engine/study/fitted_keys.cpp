@@ -8,6 +8,7 @@
 
 #include "engine/base/name_pattern.h"
 #include "engine/base/text.h"
+#include "engine/study/study_kind.h"
 
 namespace poesy {
 namespace {

@@ -19,15 +19,16 @@
 namespace poesy {
 namespace {
 
-/// A value is far from the published one if it is more than this many times larger or smaller.
-constexpr double kFar = 10.0;
+/// A value is far from the published one if it is more than this many times larger or smaller. Slightly below ten, so
+/// that a decimal point in the wrong place is noticed.
+constexpr double kFar = 9.99;
 
 /// Points count as around a point p if their root mean square distance from p is at most this share of the distance
 /// from p to the farthest joint.
 constexpr double kAround = 0.05;
 
 bool is_far(double value, double own) {
-  if (value == 0.0 || own == 0.0) return false;
+  if (own == 0.0) return false;
   const double ratio = value / own;
   return ratio < 1.0 / kFar || ratio > kFar;  // true also if the signs differ, because then ratio < 0
 }
@@ -140,6 +141,15 @@ std::vector<std::string> size_doubts(const Study& study, const Model& model) {
     }
   }
   return list;
+}
+
+std::string zones_doubt(const Study& study) {
+  if (study.errors.unused_zone.empty()) return {};
+  return asked_back(
+      fmt::format("the zones of the drawing, such as that of {}, are not used, because [errors] has no zones, so the "
+                  "errors of features have the size errors.linear (to use the zones, write errors.zones = {{ "
+                  "distribution = \"normal\", sigmas = 3 }})",
+                  study.errors.unused_zone));
 }
 
 std::string correction_doubt(const Study& study, const Model& model) {

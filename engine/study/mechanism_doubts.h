@@ -13,8 +13,8 @@ namespace poesy {
 std::string asked_back(std::string_view clause);
 
 /// Questions about the values that a study gives to parameters of the geometry, one line each. A value is questioned if
-/// its sign differs from that of the published value (for a mechanism from a file, the file's value), or if it is more
-/// than ten times larger or smaller. If either value is zero, there is no question.
+/// its sign differs from that of the published value (for a mechanism from a file, the file's value), or if it is ten
+/// times larger or smaller, or more. If the published value is zero, there is no question.
 std::vector<std::string> geometry_doubts(const MechanismChoice& mechanism);
 
 /// Questions about the mechanism of a study, one line each: geometry_doubts(), and one for each property in
@@ -30,6 +30,10 @@ std::vector<std::string> workspace_doubts(const Study& study, const PoseSet& pos
 /// than an eighteenth of it (10 deg if the bound is half a turn). There are no questions if the kind of study varies no
 /// errors or has StudyKind::finds_sizes. model: the mechanism of the study.
 std::vector<std::string> size_doubts(const Study& study, const Model& model);
+
+/// A question if features of the drawing vary with the size of all lengths although they have zones
+/// (ErrorModel::unused_zone); empty if there are none.
+std::string zones_doubt(const Study& study);
 
 /// A warning if the study corrects the drives at each pose (`calibrated = true`), but limits the displacement of a
 /// point that is far from the points for which this correction is best (Model::metric_points()). A point is far from

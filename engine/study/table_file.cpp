@@ -67,10 +67,12 @@ struct TableColumn {
                                  known.numbers.front().name, display_unit(known.numbers.front().dimension).name));
   }
   std::string advice = suggestion(name, names(known.numbers));
-  const std::size_t end = std::min(name.rfind('_'), name.size());
-  const auto column = std::ranges::find(known.numbers, name.substr(0, end), &KnownColumn::name);
-  const Unit* const unit = end < name.size() ? find_unit(name.substr(end + 1)) : nullptr;
-  if (unit != nullptr && column != known.numbers.end() && unit->dimension == column->dimension) {
+  for (const std::string_view between : {"_", "/", " in ", " "}) {
+    const std::size_t end = name.rfind(between);
+    if (end == std::string_view::npos) continue;
+    const auto column = std::ranges::find(known.numbers, trimmed(name.substr(0, end)), &KnownColumn::name);
+    const Unit* const unit = find_unit(trimmed(name.substr(end + between.size())));
+    if (unit == nullptr || column == known.numbers.end() || unit->dimension != column->dimension) continue;
     advice = fmt::format("write its unit in brackets: {} [{}]", column->name, unit->name);
   }
   if (!known.labels.empty()) advice += "; or delete it, or call it 'part' if it names the rows";

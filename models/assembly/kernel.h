@@ -20,7 +20,7 @@ class AssemblyKernel {
   AssemblyKernel(const KernelProblem& problem, const KernelBlock& block)
       : problem_(problem),
         block_(block),
-        reporter_(problem, block),
+        reporter_(problem, block, kRounding),
         outcome_(problem),
         state_(problem, block),
         step_(problem) {}
@@ -89,6 +89,9 @@ class AssemblyKernel {
     }
   }
 
+  /// A displacement or mismatch below this is rounding: solves end at some 1e-16 (units of the reach, or rad). Without
+  /// this, a response that is always zero would have values of many magnitudes, whose statistics take long.
+  static constexpr double kRounding = 1e-20;
   /// The change of the wrenches counts as rounding if the square of the relative change is at most this.
   static constexpr double kWrenches = 1e-24;
   /// If the square of the relative change of the wrenches is below this, the change of the next round is predicted.

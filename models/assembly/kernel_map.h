@@ -91,7 +91,7 @@ void displace(const T* twist, const double* point, T* moved) {
 template <class T>
 void map_assemblies(const KernelProblem& problem, const KernelBlock& block) {
   KernelMapper<T> mapper(problem, block, 6 * (problem.bodies.size() - 1) + problem.map.stresses);
-  KernelReporter<T> reporter(problem, block);
+  KernelReporter<T> reporter(problem, block, 0.0);
   LaneOutcome<T> outcome(problem);
   for (std::size_t k = 0; k < problem.report.marks; ++k) {
     outcome.marks[k] = in_lanes<T>(problem.report.nominal_marks[k]);

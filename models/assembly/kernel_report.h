@@ -30,9 +30,10 @@ struct LaneOutcome {
 template <class T>
 class KernelReporter {
  public:
-  /// Both arguments must outlive this object.
-  KernelReporter(const KernelProblem& problem, const KernelBlock& block)
-      : problem_(problem), report_(problem.report), block_(block) {}
+  /// problem, block: must outlive this object. rounding: a displacement or mismatch below this is rounding and is
+  /// written as 0; in units of the reach, or rad.
+  KernelReporter(const KernelProblem& problem, const KernelBlock& block, double rounding)
+      : problem_(problem), report_(problem.report), block_(block), rounding_(rounding) {}
 
   /// Writes the responses of the samples from `at` on, one sample in each lane.
   void write(const LaneOutcome<T>& outcome, std::size_t at) {
@@ -49,13 +50,16 @@ class KernelReporter {
     row_ += block_.stride;
   }
 
+  /// Writes a displacement or mismatch in the kernel's units, in SI, or 0 if it is rounding.
+  void put_above_rounding(T value, double unit) { put(T(unit) * select(abs(value) < T(rounding_), T(0.0), value)); }
+
   /// Writes a vector along the base's axes, in SI. with_norm: also writes its length behind it.
   void put_vector(const T* vector, double unit, bool with_norm) {
     for (int row = 0; row < 3; ++row) {
       const double* axis = report_.axes + 3 * row;
-      put(T(unit) * madd(T(axis[2]), vector[2], madd(T(axis[1]), vector[1], T(axis[0]) * vector[0])));
+      put_above_rounding(madd(T(axis[2]), vector[2], madd(T(axis[1]), vector[1], T(axis[0]) * vector[0])), unit);
     }
-    if (with_norm) put(norm(vector, unit));
+    if (with_norm) put_above_rounding(norm(vector, 1.0), unit);
   }
 
   static T norm(const T* vector, double unit) { return T(unit) * sqrt(simd::dot3(vector, vector)); }
@@ -63,8 +67,8 @@ class KernelReporter {
   void put(const LaneDisplacement<T>& body) {
     put_vector(body.moved, report_.length, false);
     put_vector(body.theta, 1.0, false);
-    put(norm(body.moved, report_.length));
-    put(norm(body.theta, 1.0));
+    put_above_rounding(norm(body.moved, 1.0), report_.length);
+    put_above_rounding(norm(body.theta, 1.0), 1.0);
   }
 
   void put_motions(const LaneOutcome<T>& outcome) {
@@ -106,9 +110,9 @@ class KernelReporter {
       linear = linear + simd::dot3(xi + 3, xi + 3);
     }
     const T share(report_.share);
-    put(sqrt(share * gap));
-    put(sqrt(share * angular));
-    put(T(report_.length) * sqrt(share * linear));
+    put_above_rounding(sqrt(share * gap), 1.0);
+    put_above_rounding(sqrt(share * angular), 1.0);
+    put_above_rounding(sqrt(share * linear), report_.length);
   }
 
   /// Computes the moment of a wrench about a point.
@@ -161,6 +165,7 @@ class KernelReporter {
   const KernelProblem& problem_;
   const KernelReport& report_;
   const KernelBlock& block_;
+  double rounding_;        ///< see KernelReporter()
   double* row_ = nullptr;  ///< address of the next response
 };
 

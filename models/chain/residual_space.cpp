@@ -35,8 +35,7 @@ Eigen::MatrixXd independent_rows(const Eigen::MatrixXd& incidence) {
 }  // namespace
 
 ResidualSpace::ResidualSpace(const ParallelChain& chain)
-    : chain_(&chain),
-      independent_(independent_rows(incidence_of(chain))),
+    : independent_(independent_rows(incidence_of(chain))),
       of_pairs_(incidence_of(chain) * linalg::pseudo_inverse(independent_)),
       of_limb_(chain.limbs.size()) {
   const std::size_t rows = 6 * (chain.limbs.size() - 1);

@@ -15,8 +15,7 @@ namespace poesy::chain {
 /// effect of an error thus takes D numbers instead of six for each pair.
 class ResidualSpace {
  public:
-  /// Allocates scratch memory for the chain, which must outlive this object. Precondition: the chain's pairs connect
-  /// all limbs.
+  /// Allocates scratch memory for the chain. Precondition: the chain's pairs connect all limbs.
   explicit ResidualSpace(const ParallelChain& chain);
 
   /// Computes the basis. Precondition: first_order.prepare() has returned true for W = 1.
@@ -34,7 +33,6 @@ class ResidualSpace {
  private:
   void find_basis(const FirstOrder& first_order);
 
-  const ParallelChain* chain_;
   /// For L limbs, the matrix N [L - 1, L] with N^T N = incidence^T incidence. The incidence matrix has a row for each
   /// pair of limbs, with 1 for limb k and -1 for limb i.
   Eigen::MatrixXd independent_;

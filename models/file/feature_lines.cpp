@@ -85,7 +85,8 @@ void check_distance(const StudyValue& value) {
       fmt::format("{}, but the tolerance of a distance is one length, +- half the width of its zone",
                   value.is_list() ? "is a list" : "is '" + printable(text) + "'"),
       "write half the width, e.g. \"0.035 mm\" for -0.02 mm and 0.05 mm, and in the study what is not symmetric: "
-      "errors.override.ERROR = { distribution = \"normal\", limits = [\"-0.02 mm\", \"0.05 mm\"] }, or a mean");
+      "errors.override.ERROR = { distribution = \"normal\", limits = [\"-0.02 mm\", \"0.05 mm\"], sigmas = 3 }, or a "
+      "mean");
 }
 
 /// The content of a zone's table, as written.

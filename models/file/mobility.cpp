@@ -5,6 +5,7 @@
 
 #include "engine/base/units.h"
 #include "engine/linalg/decompositions.h"
+#include "models/file/structure.h"
 #include "models/file/tracking.h"
 
 namespace poesy::file {
@@ -337,7 +338,8 @@ void check_held(const Mechanism& mechanism, const Mobility& found, const std::st
 
 void check_mobility(const Mechanism& mechanism, const Mobility& home) {
   const auto fail = [&](const std::string& problem, const std::string& remedy) {
-    throw InputError(mechanism.coordinates_place, problem, remedy);
+    const std::vector<std::string> along = axes_along_legs(mechanism);
+    throw InputError(mechanism.coordinates_place, problem, along.empty() ? remedy : along.front() + "; " + remedy);
   };
   if (home.platform_freedoms == 0) fail("the platform cannot move", "look at the axes of the joints at home");
   if (home.joints == home.actuated) {

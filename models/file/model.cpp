@@ -164,7 +164,7 @@ CatalogEntry entry_of(MechanismFile file, const std::string& path, const std::st
   if (at_defaults.is_elastic()) ways.push_back(By::stiffness);
   ways.push_back(By::platform);
   if (!at_defaults.is_branched() && !meets) ways.push_back(By::published);
-  const auto read = std::make_shared<const Read>(std::move(file), defaults, std::move(found));
+  const auto read = std::make_shared<const Read>(Read{std::move(file), defaults, std::move(found)});
   std::shared_ptr<const CatalogEntry> other;
   for (auto by = ways.rbegin(); by != ways.rend(); ++by) {
     CatalogEntry entry = entry_by(read, path, *by);

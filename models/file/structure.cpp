@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <ranges>
 #include <utility>
 
 namespace poesy::file {
@@ -210,12 +209,12 @@ static bool are_at_one_point(const Joint& a, const Joint& b, double reach) {
   return (a.at_home.p - b.at_home.p).norm() <= kRounding * reach;
 }
 
-/// The first of these joints that turns, if it is a universal or spherical joint, which is the end of a leg; otherwise
-/// none. Joints that slide are left out, because their points need not be ends of anything.
-static const Joint* end_of_leg(auto&& joints) {
-  for (const Joint& joint : joints) {
-    if (joint.kind == JointKind::universal || joint.kind == JointKind::spherical) return &joint;
-    if (joint.kind == JointKind::revolute) return nullptr;
+/// The first joint of this range that turns, if it is a universal or spherical joint, which is the end of a leg;
+/// otherwise none. Joints that slide are left out, because their points need not be ends of anything.
+static const Joint* end_of_leg(auto first, auto last) {
+  for (; first != last; ++first) {
+    if (first->kind == JointKind::universal || first->kind == JointKind::spherical) return &*first;
+    if (first->kind == JointKind::revolute) return nullptr;
   }
   return nullptr;
 }
@@ -250,8 +249,10 @@ std::vector<std::string> axes_along_legs(const Mechanism& mechanism) {
     for (std::size_t j = 0; j + 1 < joints.size(); ++j) {
       if (joints[j].kind != JointKind::universal || joints[j + 1].name != joints[j].name) continue;
       if (is_part_of_sphere(joints[j], limb, mechanism.reach)) continue;
-      const Joint* const before = end_of_leg(joints.first(j) | std::views::reverse);
-      const Joint* const after = end_of_leg(joints.subspan(j + 2));
+      const std::span<const Joint> below = joints.first(j);
+      const std::span<const Joint> above = joints.subspan(j + 2);
+      const Joint* const before = end_of_leg(below.rbegin(), below.rend());
+      const Joint* const after = end_of_leg(above.begin(), above.end());
       for (const std::string& text :
            {along_leg_text("axis", joints[j], before, limb), along_leg_text("axis2", joints[j + 1], after, limb)}) {
         if (!text.empty()) return {text};

@@ -308,9 +308,19 @@ class Calibrate(ProgramTest):
         self.write("far.csv", "\n".join([header, *(",".join(row) for row in changed)]) + "\n")
         done = self.poesy("calibrate", "delta-measured.toml", "--measured", "far.csv", "-o", "far.h5")
         self.assertEqual(done.returncode, 5, done.stderr.decode())
-        self.assertIn("far.csv: the fit did not converge, so nothing of it is to be typed in; look at the units",
+        self.assertIn("far.csv: the fit did not converge, so no number of it is to be used or typed in; look at the units",
                       done.stderr.decode())
+        self.assertNotIn("measure it again", done.stderr.decode())
         self.succeeds("verify", "far.h5")
+        for words in ((done.stdout.decode(),), ("show", "far.h5"), ("show", "far.h5", "--method")):
+            shown = words[0] if len(words) == 1 else self.succeeds(*words)
+            self.assertIn("the fit did not converge", shown.lower().replace("\n", " "))
+            for said in ("to type in", "left at the", "measure it again"):
+                self.assertNotIn(said, shown)
+        self.succeeds("report", "far.h5", "-o", "far.html")
+        page = (self.folder / "far.html").read_text()
+        self.assertIn("The fit did not converge, so no number of it is to be used or typed in.", page)
+        self.assertNotIn("ive the controller the fitted values", page)
 
     def test_deviations_larger_than_the_mechanism(self):
         """Micrometres that are read as metres: the column is doubted, and its first number is refused before any fit."""
@@ -418,7 +428,7 @@ class Calibrate(ProgramTest):
         self.assertIn("the noise is 0", done.stdout.decode())
         page = self.page_of("study.toml", "m.csv")
         self.assertIn("5 more errors have a tolerance and are not fitted.", page)
-        self.assertIn("fit more errors and measure more.", page)
+        self.assertIn("measure more, so that the other errors can be fitted too.", page)
         for words in ("a good chi-square does not mean", "next = 5"):
             self.assertNotIn(words, page)
 

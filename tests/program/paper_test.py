@@ -302,7 +302,7 @@ class Paper(ProgramTest):
         words, sources = self.method_of("exact.h5")
         self.assertIn("The index of an error is the standard deviation of the response over that of the error", words)
         self.assertIn("The equations of the mechanism were solved exactly.", words)
-        self.assertEqual(sources, ["poesy", "du2022"])
+        self.assertEqual(sources, ["poesy", "du2022", "zou2008"])
 
     def test_the_method_states_a_calibration(self):
         for path in (MECHANISMS.parent / "calibration").iterdir():

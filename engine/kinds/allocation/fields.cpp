@@ -40,7 +40,7 @@ const Group<Result> kAllocation{
      {"sigma", &Result::sigma, kPartUnit, "Standard deviation of the part's errors about their mean"},
      {"sigmas", &Result::sigmas, "1", "T = shift + sigmas x sigma"},
      {"shift", &Result::shift, kPartUnit, "By how much the mean is off, as often up as down"},
-     {"cost", &Result::cost, kCostUnit, "Cost of the part; NaN for an aim without costs"},
+     {"cost", &Result::cost, kCostUnit, "Cost of the part; NaN if no part has a cost"},
      {"share", &Result::share, "1", "Share of the cost of all parts; NaN likewise"},
      {"mean_square_share", &Result::mean_square_share, "1",
       "Share of what all parts add to the mean square under the tightest limit"},
@@ -48,7 +48,9 @@ const Group<Result> kAllocation{
       "The same of each error, whose sum over a part is that of the part; NaN for an error of no part",
       Presence::where_computed},
      {"bound", &Result::bound, "1",
-      "0: T is between its bounds; 1: at the lower one; 2: at the upper one; 3: there is no choice"},
+      "0: T is between its bounds; 1: at the lower one; 2: at the upper one; 3: there is no choice; 4: at the upper "
+      "one, "
+      "because no limit depends on it"},
      {"chosen", &Result::chosen, "1", "Process or grade of the part; empty where there is none"},
      {"unit", &Result::part_unit, "1", "SI unit of T"},
      {"members", &Result::part_members, "1", "Errors of the part, with blanks between"},
@@ -110,7 +112,7 @@ const Group<Result> kCurve{
 constexpr const char* kStages = "/allocation/stages";
 
 const Fields<AllocationStage> kStageFields{
-    {"cost", &AllocationStage::cost, kByStage, kCostUnit, "Cost of all parts; NaN for an aim without costs"},
+    {"cost", &AllocationStage::cost, kByStage, kCostUnit, "Cost of all parts; NaN if no part has a cost"},
     {"lower_bound", &AllocationStage::lower_bound, kByStage, kCostUnit,
      "No tolerances cost less in this stage's programme; NaN likewise"},
     {"rms_share", &AllocationStage::rms_share, kByStage, "1", "Limit on a root mean square over limit on a value"},
@@ -244,7 +246,7 @@ void check(const Result& found) {
       throw h5::Error("/allocation/zone_key holds an unknown zone");
     }
   }
-  if (std::ranges::any_of(found.bound, [](std::uint8_t at) { return at > 3; })) {
+  if (std::ranges::any_of(found.bound, [](std::uint8_t at) { return at > Result::kWithoutEffect; })) {
     throw h5::Error("/allocation/bound holds an unknown bound");
   }
 }

@@ -344,8 +344,8 @@ void complete_allocation(Study& study, const Reading& reading) {
   if (reading.use == StudyUse::run) {
     require_all(study, section);
     check_simulated_machines(study, section);
-    check_error_sizes(study, reading, errors_of_parts(asked.parts));
   }
+  check_error_sizes(study, reading, errors_of_parts(asked.parts));
   const bool costs = std::ranges::any_of(asked.parts, has_cost);
   const auto aim = section.find("aim");
   if (!aim) asked.aim = costs ? Aim::least_cost : Aim::equal_effect;

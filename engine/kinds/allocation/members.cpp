@@ -84,19 +84,51 @@ bool is_digit(const std::string& text, std::size_t at) {
   return at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) != 0;
 }
 
+/// The pieces of a name, which are numbers and the text between them: "rod_", "1", "_x" for "rod_1_x".
+std::vector<std::string> pieces_of(const std::string& name) {
+  std::vector<std::string> pieces;
+  for (std::size_t at = 0; at < name.size(); ++at) {
+    if (at == 0 || is_digit(name, at) != is_digit(name, at - 1)) pieces.emplace_back();
+    pieces.back() += name[at];
+  }
+  return pieces;
+}
+
+/// Returns true if two names are the same but for one number: "rod_1_x" and "rod_2_x".
+bool differ_in_one_number(const std::string& one, const std::string& other) {
+  const std::vector<std::string> a = pieces_of(one);
+  const std::vector<std::string> b = pieces_of(other);
+  if (a.size() != b.size()) return false;
+  std::size_t numbers = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    if (a[k] == b[k]) continue;
+    if (!is_digit(a[k], 0) || !is_digit(b[k], 0)) return false;
+    ++numbers;
+  }
+  return numbers == 1;
+}
+
 /// The error of limb `limb` that corresponds to `factor`: it has the same frame and dimension, and its name differs
-/// only in the number of the limb. None if there is no such error.
+/// only in the number of the limb. If there is none, the only such error whose name differs in any one number, such as
+/// that of a copy of a limb with a name. None if there is no such error, or if there are several.
 std::optional<FactorIndex> counterpart(const Factor& factor, std::size_t limb, const ModelDescription& model) {
+  const auto corresponds = [&](const Factor& other) {
+    return other.limb == limb && other.frame == factor.frame && other.dimension == factor.dimension;
+  };
   const std::string number = std::to_string(factor.limb);
   for (std::size_t at = factor.name.find(number); at != std::string::npos; at = factor.name.find(number, at + 1)) {
     if (is_digit(factor.name, at + number.size()) || (at > 0 && is_digit(factor.name, at - 1))) continue;
     std::string name = factor.name;
     const auto found = model.find_factor(name.replace(at, number.size(), std::to_string(limb)));
-    if (!found) continue;
-    const Factor& other = model.factors[found->value];
-    if (other.limb == limb && other.frame == factor.frame && other.dimension == factor.dimension) return found;
+    if (found && corresponds(model.factors[found->value])) return found;
   }
-  return std::nullopt;
+  std::optional<FactorIndex> only;
+  for (std::size_t f = 0; f < model.factors.size(); ++f) {
+    if (!corresponds(model.factors[f]) || !differ_in_one_number(factor.name, model.factors[f].name)) continue;
+    if (only) return std::nullopt;
+    only = FactorIndex(f);
+  }
+  return only;
 }
 
 /// Joins each error with its counterparts in the other listed limbs into one part.

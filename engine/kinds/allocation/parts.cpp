@@ -369,8 +369,9 @@ StudyTable parts_table() {
           {.name = "identical_limbs",
            .type = "list of integers",
            .usual = "none",
-           .meaning = "With each: limbs that are made alike. Errors of them whose names differ only in the limb's "
-                      "number share one tolerance. A warning says if the limbs have other joints than each other."},
+           .meaning = "With each: limbs that are made alike. Errors of them whose names differ in one number "
+                      "only, that of the limb or of its copy, share one tolerance. A warning says if the limbs have "
+                      "other joints than each other."},
           {.name = "sigmas",
            .type = "number",
            .bounds = "greater than 0",

@@ -143,6 +143,9 @@ struct AllocationResult {
   using Parts = Array<T, axis::Part>;
   /// A number for each response and pose.
   using AtPoses = Array<double, axis::Response, axis::Pose>;
+  /// Value of `bound` for a part at its upper bound on which no limit depends, so that the limits do not determine its
+  /// tolerance.
+  static constexpr std::uint8_t kWithoutEffect = 4;
 
   std::vector<std::string> part_names;  ///< names of the parts
   Parts<std::string> part_members;      ///< names of a part's errors, separated by blanks
@@ -160,8 +163,9 @@ struct AllocationResult {
   /// The same share for each error. The shares of a part's errors add up to the share of the part; for a location and
   /// an orientation of one feature, to the sum of both. NaN for an error that is in no part.
   Array<double, axis::Factor> error_mean_square_share;
-  Parts<std::uint8_t> bound;  ///< AtBound: 0 between bounds, 1 at the lower bound, 2 at the upper bound, 3 a single
-                              ///< possible value
+  /// AtBound: 0 between bounds, 1 at the lower bound, 2 at the upper bound, 3 a single possible value; or
+  /// kWithoutEffect.
+  Parts<std::uint8_t> bound;
   Parts<std::string> chosen;  ///< name of the chosen process or grade, and of the series of numbers to which T is
                               ///< rounded down; empty without these
   /// Predicted share of good machines, among the machines with which the tolerances were found, if only this part has a

@@ -83,6 +83,25 @@ void divide_share(std::span<const double> slopes, std::span<const ErrorFactor> w
   }
 }
 
+/// Returns true if a limit depends on this part with these tolerances (SI): if it adds more than rounding to the
+/// combined effect of all parts on a limit.
+bool has_effect(const ToleranceLimits& limits, std::span<const double> tolerance, std::size_t part) {
+  constexpr double kRounding = 1e-12;  // a smaller share of a combined effect is rounding
+  for (std::size_t l = 0; l < limits.count(); ++l) {
+    const double added = limits.row(l)[part] * tolerance[part] * tolerance[part];
+    if (std::abs(added) > kRounding * limits.need(l, tolerance)) return true;
+  }
+  return false;
+}
+
+/// The value of AllocationResult::bound for a part.
+std::uint8_t bound_of(const ToleranceProgramme& programme, const TolerancePoint& point, const ToleranceLimits& limits,
+                      std::size_t part) {
+  const AtBound bound = programme.at_bound(point, part);
+  const bool decides = bound != AtBound::upper || has_effect(limits, point.tolerance, part);
+  return decides ? static_cast<std::uint8_t>(bound) : AllocationResult::kWithoutEffect;
+}
+
 /// Sets the members of a result that have a value for each part.
 void add_parts(const SearchProblem& problem, const FoundTolerances& search, const ToleranceLimits& limits,
                AllocationResult& found) {
@@ -125,7 +144,7 @@ void add_parts(const SearchProblem& problem, const FoundTolerances& search, cons
     double of_errors = 0.0;
     for (const std::size_t one : parts_of_errors) of_errors += shares[one];
     divide_share(slopes, weights, of_errors, found.error_mean_square_share);
-    found.bound(i) = static_cast<std::uint8_t>(programme.at_bound(point, i));
+    found.bound(i) = bound_of(programme, point, limits, i);
     found.chosen(i) = programme.chosen_name(i, point.process[i]);
   }
   found.coarser_yield = {{parts}, search.coarser_yield};

@@ -134,12 +134,12 @@ void add_details(const Result& found, std::vector<FilledColumn>& columns) {
   columns.push_back(words_column("errors", "errors", found.part_members, kFirstToGo + 1));
 }
 
-/// Whether the part adds nothing to the mean square under the tightest limit and is at its upper bound. The limits then
-/// do not determine its tolerance.
-bool has_no_effect(const Result& found, std::size_t n) {
-  constexpr double kRounding = 1e-12;  // a smaller share of the mean square is rounding
-  return found.mean_square_share(n) < kRounding && found.bound(n) == static_cast<std::uint8_t>(AtBound::upper);
+/// Returns true if some tolerances are chosen from processes, grades or rounded numbers.
+bool has_steps(const Result& found) {
+  return std::ranges::any_of(found.chosen, [](const std::string& one) { return !one.empty(); });
 }
+
+bool has_no_effect(const Result& found, std::size_t n) { return found.bound(n) == Result::kWithoutEffect; }
 
 /// Columns with the name and the tolerance of each part.
 std::vector<FilledColumn> part_columns(const Result& found) {
@@ -151,9 +151,9 @@ std::vector<FilledColumn> part_columns(const Result& found) {
 }
 
 std::vector<FilledColumn> drawing_columns(const Result& found, bool alike) {
-  static constexpr std::array<std::string_view, 4> kBounds{"", "lower", "upper", "no choice"};
+  static constexpr std::array<std::string_view, 5> kBounds{"", "lower", "upper", "no choice", "upper"};
   std::vector<FilledColumn> columns = found.has_zones() ? zone_columns(found) : part_columns(found);
-  if (std::ranges::any_of(found.chosen, [](const std::string& one) { return !one.empty(); })) {
+  if (has_steps(found)) {
     columns.push_back(words_column("chosen", "grade or process", found.chosen));
   }
   if (!alike) {
@@ -228,8 +228,7 @@ Table drawing_table(const Result& found, RowOrder order) {
   const auto idle = [&](std::size_t n) { return has_no_effect(found, n); };
   if (!found.has_zones() && std::ranges::any_of(positions(found.parts()), idle)) {
     table.notes.emplace_back(
-        "no effect: a part that adds nothing to the mean square under the tightest limit; its T is where the search "
-        "ends, not what the part needs");
+        "no effect: a part on which no limit depends; its T is where the search ends, not what the part needs");
   }
   if (std::string note = fixed_note(found); !note.empty()) table.notes.push_back(std::move(note));
   add_copies_note(found, table);
@@ -361,6 +360,11 @@ double change_of_cost(double predicted, double found) {
 /// yields or factors for which the costs are predicted.
 void add_costs(const Result& found, std::span<const double> costs, FilledColumn at, Table& table) {
   table.notes.emplace_back("predicted, not certified; change: from the cost of the tolerances found");
+  if (has_steps(found)) {
+    table.notes.emplace_back(
+        "tolerances go in steps (grades, processes, rounded numbers), so costs jump, and the tolerances that a study "
+        "finds may cost some per cent more than this");
+  }
   fill(table, positions(costs.size()),
        {std::move(at), cost_column("cost", "cost", costs), {percent_column("change", "change"), [&](std::size_t k) {
                                                               return percent_cell(

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ranges>
 #include <string_view>
 
 #include "engine/base/archive.h"
@@ -231,8 +230,9 @@ std::optional<std::vector<double>> try_variations(const Plan& plan, const Model&
                                                   std::span<const std::uint32_t> machines,
                                                   std::span<const Variation> variations, const RunOptions& options,
                                                   const MachineCalibration* calibration) {
-  POESY_EXPECTS(std::ranges::none_of(variations | std::views::join,
-                                     [&](const ErrorFactor& one) { return plan.is_per_pose(one.error); }));
+  POESY_EXPECTS(std::ranges::none_of(variations, [&](const Variation& variation) {
+    return std::ranges::any_of(variation, [&](const ErrorFactor& one) { return plan.is_per_pose(one.error); });
+  }));
   const VariationJob job{plan, model, {plan, model, limits, calibration}, {machines, variations}, calibration};
   const auto loads = fold_units(job, options);
   if (!loads) return std::nullopt;

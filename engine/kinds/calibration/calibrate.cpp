@@ -165,7 +165,7 @@ class Calibration {
   Calibrated run() {
     fit_ = calibration::fit({measurement_, columns_.directions, weights_.sd, columns_.prior});
     Calibrated made;
-    made.converged = fit_.solved && fit_.converged;
+    made.result.converged = fit_.solved && fit_.converged ? 1 : 0;
     if (fit_.solved) set_result(made);
     made.solves = exact_.solves() + solves_;
     return made;

@@ -39,7 +39,6 @@ struct MachineToCalibrate {
 /// The result of a calibration, and information on the fit for the user.
 struct Calibrated {
   CalibrationResult result;  ///< the result; the name, the text and the hash of the table of measurements are not set
-  bool converged = false;    ///< whether the fit converged
   std::uint64_t solves = 0;  ///< how many times the mechanism was solved
   std::vector<std::string> warnings;  ///< warnings, as sentences for people
 };

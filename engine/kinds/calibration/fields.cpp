@@ -65,6 +65,8 @@ const Group<Result> kCalibration{
      {"below_noise", &Result::below_noise, "1", "Directions whose signal is below the noise"},
      {"unfitted", &Result::unfitted, "1", "Errors with a tolerance beyond the fitted ones"},
      {"steps", &Result::steps, "1", "Steps of the fit"},
+     {"converged", &Result::converged, "1", "1: the fit converged; 0: no number of this result is to be used",
+      Presence::where_computed},
      {"O1", &Result::O1, "1", "Observability index, scaled by the tolerances and the noise (Borm and Menq)"},
      {"O2", &Result::O2, "1", "Observability index, scaled (Driels and Pathre)"},
      {"O3", &Result::O3, "1", "Observability index, scaled (Nahvi, Hollerbach and Hayward)"},

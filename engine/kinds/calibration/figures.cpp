@@ -133,7 +133,8 @@ void add_left(const StoredResult& result, Page& page) {
   const CalibrationResult& found = calibration_of(result);
   std::vector<LeftComponent> components = left_components(found);
   if (components.empty()) return;
-  std::ranges::stable_partition(components, [](const LeftComponent& one) { return one.named.unit == "m"; });
+  std::stable_partition(components.begin(), components.end(),
+                        [](const LeftComponent& one) { return one.named.unit == "m"; });
   const PoseFigures figures(result, shown_cells(result, 1), page);
   std::vector<Field> fields;
   for (const LeftComponent& one : components) {

@@ -45,7 +45,7 @@ Table fitted_table(const CalibrationResult& found) {
         {number_column("scale_over_sd", found.has_tolerances != 0 ? "tolerance/sd" : "scale/sd"),
          [&](std::size_t n) { return number_cell(found.scale(n) / found.sd(n), 2); }}});
   if (found.noise_is_known != 0) table.notes.push_back(fitted_legend(found));
-  table.notes.push_back(residual_text(found));
+  if (found.converged != 0) table.notes.push_back(residual_text(found));
   for (std::string& warning : calibration_warnings(found)) table.notes.push_back(std::move(warning));
   if (const std::string typed = typed_text(found); !typed.empty()) table.notes.push_back(typed);
   for (std::string& note : estimate_notes(found)) table.notes.push_back(std::move(note));
@@ -139,6 +139,7 @@ std::string contradiction_text(const CalibrationResult& found) {
 
 /// Advice on the parameters to type into the controller, and on what to measure next.
 std::string advice_text(const CalibrationResult& found) {
+  if (found.converged == 0) return sentence(kNotConvergedRemedy);
   const std::string typed = typed_text(found);
   std::string text = sentence(typed.empty() ? "give the controller the fitted values" : typed);
   if (is_contradicted(found)) {
@@ -147,7 +148,7 @@ std::string advice_text(const CalibrationResult& found) {
   }
   if (!found.gain.empty()) return text + " To know them better, measure at the first of the poses to measure next.";
   if (unsure_notes(found).empty()) return text;
-  text += found.unfitted > 0 ? " To know them better, fit more errors and measure more"
+  text += found.unfitted > 0 ? " To know them better, measure more, so that the other errors can be fitted too"
                              : " To know them better, measure more or more precisely";
   if (found.noise_is_known == 0) return text + ".";  // without noise, no next poses are chosen
   return text + ": next = 5 in [analysis.calibration] names the poses that tell most.";
@@ -173,7 +174,7 @@ Answer answer(const StoredResult& result) {
   Answer lines;
   for (const std::string& warning : calibration_warnings(found)) lines.emplace_back("Caution", sentence(warning));
   if (const std::string kept = kept_text(found); !kept.empty()) lines.emplace_back("Limits", sentence(kept));
-  lines.emplace_back("Answer", sentence(found_text(found)));
+  if (found.converged != 0) lines.emplace_back("Answer", sentence(found_text(found)));
   // The text begins with "file", so that sentence() does not capitalise the name of the file.
   lines.emplace_back("Measured", sentence("file " + measured_text(found)));
   lines.emplace_back("How sure", sure_text(found));

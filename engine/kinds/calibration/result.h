@@ -81,6 +81,8 @@ struct CalibrationResult {
   /// Number of combinations of fitted errors whose effect on the measured values is below the noise.
   std::uint64_t below_noise = 0;
   std::uint64_t steps = 0;  ///< number of steps of the fit
+  /// 1 if the fit converged. 0: no number of the result may be used. Files of version 0.2 do not have this member.
+  std::uint64_t converged = 1;
   double O1 = kNaN;         ///< observability index of Borm and Menq (calibration/inference.h)
   double O2 = kNaN;         ///< observability index of Driels and Pathre
   double O3 = kNaN;         ///< observability index of Nahvi, Hollerbach and Hayward

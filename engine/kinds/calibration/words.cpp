@@ -161,6 +161,7 @@ std::string measured_text(const CalibrationResult& found) {
 }
 
 std::string residual_text(const CalibrationResult& found) {
+  if (found.converged == 0) return "the fit did not converge";
   if (found.noise_is_known == 0) return "the noise is 0, so all values count alike and there are no intervals";
   const std::string residual = fmt::format("residual {:.3g} of the noise", found.rms);
   if (found.dof == 0) return residual + "; as many values as fitted numbers, so nothing checks the fit";
@@ -179,7 +180,8 @@ std::vector<std::string> unsure_notes(const CalibrationResult& found) {
 }
 
 bool is_contradicted(const CalibrationResult& found) {
-  return found.noise_is_known != 0 && found.sd_is_estimated == 0 && found.dof > 0 && found.p < kContradiction;
+  return found.converged != 0 && found.noise_is_known != 0 && found.sd_is_estimated == 0 && found.dof > 0 &&
+         found.p < kContradiction;
 }
 
 std::vector<std::string> estimate_notes(const CalibrationResult& found) {
@@ -214,6 +216,7 @@ std::optional<LeftLength> left_length(const CalibrationResult& found) {
 }
 
 std::vector<std::string> left_notes(const CalibrationResult& found) {
+  if (found.converged == 0) return {};
   std::vector<std::string> parts;
   std::vector<std::string> unmeasured;
   const std::size_t poses = found.left_mean.length<axis::Pose>();
@@ -239,13 +242,14 @@ std::vector<std::string> left_notes(const CalibrationResult& found) {
 }
 
 std::string kept_text(const CalibrationResult& found) {
-  if (std::isnan(found.kept)) return {};
+  if (found.converged == 0 || std::isnan(found.kept)) return {};
   return fmt::format("the limits are kept at all poses by {} of the machines that this one may be{}",
                      percent_text(found.kept),
                      is_contradicted(found) ? ", if the fitted errors explained its measurements" : "");
 }
 
 std::string typed_text(const CalibrationResult& found) {
+  if (found.converged == 0) return {};
   // The half-width of an estimate's interval divided by its standard deviation. This ratio is the same for all fitted
   // errors.
   double quantile = kNaN;
@@ -267,6 +271,7 @@ std::string typed_text(const CalibrationResult& found) {
 
 std::vector<std::string> calibration_warnings(const CalibrationResult& found) {
   std::vector<std::string> list;
+  if (found.converged == 0) return {std::string(kNotConverged)};
   if (found.noise_is_known == 0) return list;
   std::vector<std::size_t> outliers;
   for (std::size_t i = 0; i < found.values.size(); ++i) {

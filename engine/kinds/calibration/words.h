@@ -3,19 +3,28 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/kinds/calibration/result.h"
 
 namespace poesy {
 
+/// What is said of a fit that did not converge, and what to do then.
+/// @{
+inline constexpr std::string_view kNotConverged =
+    "the fit did not converge, so no number of it is to be used or typed in";
+inline constexpr std::string_view kNotConvergedRemedy =
+    "look at the units of the columns of the measurements, fit fewer errors, or take prior = \"tolerances\"";
+/// @}
+
 /// A text on what was measured: "12 deviation_z, 3 distances".
 std::string values_text(const CalibrationResult& found);
 /// A text on what was measured and fitted: "heights.csv: 12 deviation_z, 3 distances at 13 poses; 7 fitted errors, 8
 /// degrees of freedom".
 std::string measured_text(const CalibrationResult& found);
-/// A text on the size of the residuals and the result of the chi-square test. If the noise is 0, the text says so
-/// instead.
+/// A text on the size of the residuals and the result of the chi-square test. If the noise is 0, or the fit did not
+/// converge, the text says so instead.
 std::string residual_text(const CalibrationResult& found);
 /// Clauses on what the intervals do not show: combinations of fitted errors with effects below the noise, and errors
 /// that are not fitted.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <ranges>
 
 #include "engine/base/text.h"
 #include "engine/kinds/evaluate/cases.h"
@@ -62,10 +61,10 @@ std::vector<double> read_case_errors(const StudySection& section, const ModelDes
   std::vector<std::string_view> known = names(model.factors);
   const std::vector<std::string_view> sets = names(model.factor_sets);
   known.insert(known.end(), sets.begin(), sets.end());
-  const auto sizes = kErrorDimensions | std::views::transform(error_kind);
-  known.insert(known.end(), sizes.begin(), sizes.end());
+  for (const Dimension dimension : kErrorDimensions) known.push_back(error_kind(dimension));
   section.allow(known, "factor");
-  for (const std::string_view key : sizes) {
+  for (const Dimension dimension : kErrorDimensions) {
+    const std::string_view key = error_kind(dimension);
     if (const auto value = section.find(key)) set_case_errors(*value, key, model, errors);
   }
   for (const FactorSet* set : sets_in_case(section, model)) {

@@ -89,6 +89,11 @@ struct ShownNumbers {
   const Numbers& quantile_error;
 };
 
+// Written out, because clang 14 does not deduce the arguments of aggregates.
+template <class Numbers, class Quantiles, class Counts>
+ShownNumbers(std::vector<std::pair<std::string, const Numbers*>>, const Counts&, const Numbers&, const Quantiles&,
+             const Quantiles&, const Quantiles&, const Numbers&) -> ShownNumbers<Numbers, Quantiles, Counts>;
+
 /// Appends columns with these numbers and quantiles. at: positions on the axes before the axis of the lines: the
 /// response, or nothing if the lines are responses.
 template <class Numbers, class Quantiles, class Counts, class... Positions>

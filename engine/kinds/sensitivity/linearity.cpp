@@ -215,7 +215,8 @@ std::string index_change_text(const StoredResult& result, std::size_t response, 
   }
   const std::string names = some_names(list, kMostNames);
   if (is_first_order(result)) {
-    return std::string(kSizesNotTested) + (list.empty() ? "" : "; not at a tenth for " + names);
+    return std::string(kSizesNotTested) +
+           (list.empty() ? "" : "; already to first order they change at a tenth of the size for " + names);
   }
   std::size_t effects = 0;
   std::size_t unknown = 0;

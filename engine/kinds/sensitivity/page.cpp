@@ -301,8 +301,11 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
 MethodWords method(const StoredResult&) {
   return {
       "The index of an error is the standard deviation of the response over that of the error while only this error "
-      "varies; indices over the workspace are the mean of the poses' indices plus their standard deviation.",
-      {kDu}};
+      "varies; indices over the workspace are the mean of the poses' indices plus their standard deviation, "
+      "without the noise of sampling, and have intervals by the method of Zou and Donner. The effect of an error is "
+      "its "
+      "index times its standard deviation.",
+      {kDu, kZouDonner}};
 }
 
 }  // namespace

@@ -343,10 +343,19 @@ std::string what_to_do(const StoredResult& result, const SweepResult& found, std
   return fmt::format("The best design lies within the sweep: look closer around it.{}", more);
 }
 
+/// A sentence on how many designs keep the limits; empty if no design is judged by limits.
+std::string passes_text(const SweepResult& found) {
+  const auto count = [&](std::string_view verdict) { return std::ranges::count(found.verdict.all(), verdict); };
+  const std::size_t all = found.designs();
+  if (static_cast<std::size_t>(count("not kept")) == all) return fmt::format("All {} designs FAIL.", all);
+  if (count("kept") == 0 && count("undecided") == 0) return {};
+  return fmt::format("{} of {} PASS.", count("kept"), counted(all, "design", "designs"));
+}
+
 Answer answer(const StoredResult& result) {
   const SweepResult& found = sweep_of(result);
-  std::string best;
-  for (std::size_t q = 0; q < found.quantities.size(); ++q) best += (q == 0 ? "" : " ") + best_text(found, q);
+  std::string best = passes_text(found);
+  for (std::size_t q = 0; q < found.quantities.size(); ++q) best += (best.empty() ? "" : " ") + best_text(found, q);
   const bool paired = std::ranges::any_of(found.is_paired.all(), [](std::uint8_t is) { return is != 0; });
   const std::string sure = paired
                                ? "All designs have the same machines, so their differences are surer than their values."

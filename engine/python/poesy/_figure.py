@@ -159,6 +159,8 @@ def _residuals(result: Result, axes: Axes) -> None:
     """Draws the standardised residuals in the order of the measurements, and the limit beyond which they are
     outliers."""
     found = result.to_xarray("calibration")
+    if "converged" in found and not int(found["converged"]):
+        raise NotInResult(f"{result.path}: the fit did not converge, so its residuals mean nothing")
     values = found["standardised"].values
     if np.isnan(values).all():
         raise NotInResult(f"{result.path}: residuals have no standard deviation, because the noise is 0")

@@ -42,6 +42,7 @@ void warn_of_mechanism(const ReportedResult& result, Warnings& list) {
   if (result.model == nullptr || result.study == nullptr) return;
   for (const std::string& doubt : mechanism_doubts(result.study->mechanism, *result.model))
     list.push_back("The mechanism: " + doubt);
+  if (const std::string doubt = zones_doubt(*result.study); !doubt.empty()) list.push_back("The errors: " + doubt);
 }
 
 void warn_of_workspace(const ReportKind& kind, const ReportedResult& result, Warnings& list) {

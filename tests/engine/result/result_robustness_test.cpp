@@ -134,6 +134,12 @@ TEST_F(UnreadableResult, Text) {
   expect_contains(message(), "not an intact HDF5 file");
 }
 
+TEST_F(UnreadableResult, Study) {
+  path_ = folder_ / "study.toml";
+  write_bytes(path_, "format = \"poesy-study\"\n");
+  expect_contains(message(), "is not a result; if it is a study, run it");
+}
+
 TEST_F(UnreadableResult, TruncatedAnywhere) {
   Example().write_sensitivity(path_);
   const std::string whole = read_bytes(path_);

@@ -22,7 +22,7 @@ constexpr const char* kName = "linear-delta-drawing";
 const std::string kHalfWidth =
     ", but the tolerance of a distance is one length, +- half the width of its zone; write half the width, e.g. "
     "\"0.035 mm\" for -0.02 mm and 0.05 mm, and in the study what is not symmetric: errors.override.ERROR = { "
-    "distribution = \"normal\", limits = [\"-0.02 mm\", \"0.05 mm\"] }, or a mean";
+    "distribution = \"normal\", limits = [\"-0.02 mm\", \"0.05 mm\"], sigmas = 3 }, or a mean";
 
 const json& expected() {
   static const json all = json::parse(std::ifstream(POESY_TEST_DATA "/drawing.json"));

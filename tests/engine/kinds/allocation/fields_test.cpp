@@ -239,7 +239,7 @@ TEST_F(AllocationFile, RefusesWhatNoCertificateHas) {
             std::string::npos);
   EXPECT_NE(problem_with("/allocation/certificate/rejects", "/allocation/certificate/seed").find("no certificate has"),
             std::string::npos);
-  written_.bound(2) = 4;
+  written_.bound(2) = 5;
   write();
   EXPECT_THROW(stored(), FileError);
 }

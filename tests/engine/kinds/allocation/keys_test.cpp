@@ -277,13 +277,14 @@ TEST(BlockOfParts, JoinsOnlyErrorsOfOneFrameAndDimension) {
   }
 }
 
-/// A study of a mechanism of the registry in which each error is a part, but the same errors of the given limbs share
+/// A study of a mechanism of the catalog in which each error is a part, but the same errors of the given limbs share
 /// one part.
-Study study_of_limbs(const std::string& model, const std::string& limit, const std::string& limbs) {
+Study study_of_limbs(const std::string& model, const std::string& limit, const std::string& limbs,
+                     const Catalog& catalog = registry()) {
   return read("format = \"poesy-study\"\nversion = 1\nmechanism = { model = \"" + model +
                   "\" }\nposes = { count = 3 }\n[analysis]\nkind = \"allocation\"\nsigmas = 3\nlimits = { " + limit +
                   " }\n[[analysis.parts]]\nfactors = \"all\"\neach = true\nidentical_limbs = " + limbs,
-              registry());
+              catalog);
 }
 
 TEST(BlockOfParts, JoinsTheLimbsOfMechanisms) {
@@ -304,6 +305,23 @@ TEST(BlockOfParts, JoinsTheLimbsOfMechanisms) {
   const Response& first = find(registry(), "3-prs")->description.responses.front();
   const std::string size = first.dimension == Dimension::length ? "\"1 mm\"" : "\"1 deg\"";
   EXPECT_EQ(parts("3-prs", first.name + " = " + size, "[1, 2, 3]").size(), 17u);  // its set "all" has 51 errors
+}
+
+TEST(BlockOfParts, JoinsCopiesOfLimbsWithNames) {
+  std::ostringstream text;
+  text << std::ifstream(POESY_TEST_DATA "/mechanisms/linear-delta.toml").rdbuf();
+  const Study study = study_of_limbs("linear-delta", "x = \"0.1 mm\"", "[4, 5, 6, 7, 8, 9]",
+                                     {registry().from_text(text.str(), "linear-delta.toml")});
+  const ModelDescription& model = study.model();
+  std::vector<std::string> alike;
+  for (const AllocatedPart& part : options_of(study).parts) {
+    for (const FactorIndex error : part.factors) {
+      if (part.name.starts_with("rod_")) alike.push_back(part.name + ": " + model.factors[error.value].name);
+    }
+  }
+  EXPECT_EQ(alike, (std::vector<std::string>{"rod_left_1: rod_left_1", "rod_left_1: rod_left_2",
+                                             "rod_left_1: rod_left_3", "rod_right_1: rod_right_1",
+                                             "rod_right_1: rod_right_2", "rod_right_1: rod_right_3"}));
 }
 
 TEST(BlockOfParts, AsksAboutIdenticalLimbsWithOtherJoints) {

@@ -217,6 +217,7 @@ TEST(ToleranceSearch, MakesAPartThatDoesNothingCoarse) {
     study.asked().parts.back().hi = 0.7;
     const AllocationResult found = study.find();
     EXPECT_EQ(found.tolerance(2), 0.7);
+    EXPECT_EQ(found.bound(2), AllocationResult::kWithoutEffect);
     EXPECT_EQ(idle_parts(found), 0u);
     EXPECT_EQ(found.design_rejects, found.design_most);
     if (found.stages.back().name == "coarser where nothing breaks") {
@@ -225,6 +226,20 @@ TEST(ToleranceSearch, MakesAPartThatDoesNothingCoarse) {
     }
   }
   EXPECT_GE(loosened, 1u);
+}
+
+// At the first pose, where the limit is tight, only the first part has an effect; at the second pose only the second.
+TEST(ToleranceSearch, KnowsThatALimitWithRoomDependsOnAPart) {
+  const auto function = [](std::span<const double> x, double place, std::span<double> y) {
+    y[0] = place < 0.5 ? x[0] : 0.1 * x[1];
+  };
+  FunctionStudy study(2, function, 0.3, 20'000);
+  for (std::size_t i = 0; i < 2; ++i) study.asked().parts.push_back(part_of(i, reciprocal(0.0, 1.0)));
+  study.asked().parts.back().hi = 0.7;
+  const AllocationResult found = study.run(2, {0.2, 0.8}).as<AllocationResult>();
+  EXPECT_EQ(found.tolerance(1), 0.7);
+  EXPECT_EQ(found.mean_square_share(1), 0.0);
+  EXPECT_EQ(found.bound(1), static_cast<std::uint8_t>(AtBound::upper));
 }
 
 TEST(ToleranceSearch, FindsTheSameOnAnyNumberOfThreads) {

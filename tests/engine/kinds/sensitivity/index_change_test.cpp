@@ -53,7 +53,8 @@ TEST(IndexChange, IsNotTestedToFirstOrder) {
   EXPECT_NE(std::ranges::find(table.notes, text), table.notes.end());
   stored = result({-0.5, 0.0, 0.0});
   stored.study_text = "[mechanism]\nfidelity = \"first-order\"\n";
-  EXPECT_EQ(index_change_text(stored, 0), text + "; not at a tenth for delta_b (-50.0 %)");
+  EXPECT_EQ(index_change_text(stored, 0),
+            text + "; already to first order they change at a tenth of the size for delta_b (-50.0 %)");
 }
 
 TEST(IndexChange, IsAColumnOfTheRankingAndANote) {
