@@ -19,6 +19,7 @@
 #include "engine/kinds/registry.h"
 #include "engine/kinds/study_file.h"
 #include "engine/report/display.h"
+#include "engine/report/latex_text.h"
 #include "engine/report/merits.h"
 #include "engine/report/method.h"
 #include "engine/report/one_study.h"
@@ -46,6 +47,7 @@ struct ShowOptions {
   std::optional<std::size_t> width;
   bool json = false;
   bool method = false;  ///< true to show the method in words instead of tables
+  bool latex = false;   ///< true to print the method as LaTeX
 };
 
 RowOrder order_of(const ShowOptions& options) {
@@ -228,8 +230,8 @@ int show_method(const ShowOptions& options) {
   const StoredResult result = read_result_with_warning(options.results.front());
   const ReportKind& kind = kind_of(result).report;
   const std::optional<Study> study = study_in(result, registry());
-  print(prose_of(method_text(kind, result, study ? &*study : nullptr), width_of(options)) + "\n" +
-        method_references(kind, result));
+  const std::string text = method_text(kind, result, study ? &*study : nullptr);
+  print(prose_of(options.latex ? latex_text(text) : text, width_of(options)) + "\n" + method_references(kind, result));
   return kDone;
 }
 
@@ -260,8 +262,10 @@ Command& add_show(Command& program) {
                            "characters of a line; default: the terminal's, and where there is none, no limit", 1,
                            kMostNumber);
   auto* const json = command.add_flag("--json", options.json, "the tables as JSON with all digits, and nothing else");
-  command.add_flag("--method", options.method, "the method in words with this study's numbers, and what to cite")
-      ->excludes(json);
+  auto* const method =
+      command.add_flag("--method", options.method, "the method in words with this study's numbers, and what to cite")
+          ->excludes(json);
+  command.add_flag("--latex", options.latex, "with --method: the words as LaTeX")->needs(method);
   command.examples = {{"the tables of a result", "poesy show result.h5"},
                       {"the ten errors that matter most to another response",
                        "poesy show result.h5 --response angular_deformation --top 10"},

@@ -83,7 +83,7 @@ void expect_positive(const char* parameter, double value) {
 
 void expect_values(std::span<const double> values, std::size_t least_number) {
   if (values.size() < least_number) {
-    throw std::invalid_argument("values must be at least " + std::to_string(least_number) + ", not " +
+    throw std::invalid_argument("number of values must be at least " + std::to_string(least_number) + ", not " +
                                 std::to_string(values.size()));
   }
   if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {

@@ -200,6 +200,14 @@ std::string compared_response(std::span<const StoredResult* const> results, cons
   return at == first.responses.end() ? std::string() : at->name;
 }
 
+/// The verdict on the wanted yield: "FAIL (90 % wanted)"; empty if the study asks for no yield.
+static std::string asked_text(const YieldVerdict& yield) {
+  using enum YieldVerdict::Decision;
+  if (yield.decision == not_asked || !(yield.asked > 0.0)) return {};
+  const std::string_view word = yield.decision == kept ? "PASS" : yield.decision == not_kept ? "FAIL" : "UNDECIDED";
+  return fmt::format("{} ({} wanted)", word, percent_text(yield.asked));
+}
+
 Merit yield_merit(const YieldVerdict& yield) {
   const Interval machines{yield.ci_low, yield.ci_high};
   const Interval interval = yield.with_parts.value_or(machines);
@@ -209,7 +217,8 @@ Merit yield_merit(const YieldVerdict& yield) {
           .low = 100.0 * interval.low,
           .high = 100.0 * interval.high,
           .most_best = true,
-          .narrows = !yield.with_parts.has_value()};
+          .narrows = !yield.with_parts.has_value(),
+          .asked = asked_text(yield)};
 }
 
 std::vector<std::vector<Merit>> compared_merits(const ReportKind& kind, std::span<const StoredResult* const> results,
@@ -246,6 +255,16 @@ MeritChange change_of(const Merit& a, const Merit& b) {
   return change;
 }
 
+/// A clause with the verdicts of results on the value of a figure of merit that each study asks for: "A FAIL (90 %
+/// wanted), B PASS (90 % wanted)". Empty if no study asks for one. merits: each result's letter and figure of merit.
+static std::string asked_text(std::span<const std::pair<char, const Merit*>> merits) {
+  std::vector<std::string> parts;
+  for (const auto& [letter, merit] : merits) {
+    if (!merit->asked.empty()) parts.push_back(fmt::format("{} {}", letter, merit->asked));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
 std::optional<Table> merits_table(std::span<const std::vector<Merit>> results) {
   const std::vector<std::string> shared = shared_merits(results);
   if (shared.empty()) return std::nullopt;
@@ -257,18 +276,30 @@ std::optional<Table> merits_table(std::span<const std::vector<Merit>> results) {
                           number_column("change_low", "low", "", 1), number_column("change_high", "high", "", 1),
                           main_column(number_column("value", "value")), number_column("low", "low", "", 1),
                           number_column("high", "high", "", 1), text_column("unit", "unit")},
-              .notes = {"low, high: intervals of the value, and of its change as if both results were drawn "
-                        "independently; common draws make it wider than it need be"}};
+              .notes = {}};
+  const auto has_interval = [](const Merit& merit) { return !std::isnan(merit.low); };
+  if (std::ranges::any_of(results, [&](const auto& list) { return std::ranges::any_of(list, has_interval); })) {
+    table.notes.emplace_back(
+        "low, high: intervals of the value, and of its change as if both results were drawn independently; common "
+        "draws make it wider than it need be");
+  } else {
+    table.notes.emplace_back(
+        "no verdict, because these numbers have no intervals; a study of machines with a limit has a yield with one, "
+        "and poesy sweep compares designs by the same machines");
+  }
   NoVerdicts no_verdicts;
   for (const std::string& what : shared) {
     const Merit& first = *find(results.front(), what);
+    std::vector<std::pair<char, const Merit*>> all;
     for (std::size_t n = 0; n < results.size(); ++n) {
       const Merit& merit = *find(results[n], what);
+      all.emplace_back(letter_of(n), &merit);
       table.rows.push_back(row_of(first, merit, n));
       if (!merit.others.empty()) add_no_verdict(merit, letter_of(n), what, no_verdicts);
       std::string remedy = n == 0 ? std::string() : remedy_text(first, merit, n);
       if (!remedy.empty()) table.notes.push_back(std::move(remedy));
     }
+    if (std::string asked = asked_text(all); !asked.empty()) table.notes.push_back(what + ": " + asked);
     if (!first.note.empty()) table.notes.push_back(first.note);
   }
   for (const auto& [reason, merits] : no_verdicts) {
@@ -285,8 +316,10 @@ std::string merit_sentences(const std::vector<Merit>& a, const std::vector<Merit
     if (other == nullptr) continue;
     const bool is_of_limit = merit.what.starts_with(kLimitMerit);
     if (is_of_limit && change_of(merit, *other).verdict > Change::worse) continue;  // only in merits_table()
+    const std::string asked = asked_text(std::array{std::pair('A', &merit), std::pair(letter, other)});
     if (other->others.empty()) {
-      sentences.push_back(sentence(merit, *other, letter));
+      sentences.push_back(sentence(merit, *other, letter) +
+                          (asked.empty() ? "" : fmt::format(" Verdict on the {} of each: {}.", merit.what, asked)));
     } else {
       add_no_verdict(*other, letter, values_text(merit, *other, letter), no_verdicts);
     }

@@ -37,6 +37,8 @@ struct Merit {
   bool most_best = false;  ///< true if a larger value is better, false if a smaller one is
   bool narrows = true;     ///< true if more samples make the interval narrower
   std::string note = {};   ///< sentence on what the interval does not include; empty: none
+  /// Verdict on the value that the study asks for: "FAIL (90 % wanted)"; empty if it asks for none.
+  std::string asked = {};
   /// Requirements in which the result differs from the first of the compared results; empty: none.
   std::vector<OtherRequirement> others = {};
 };

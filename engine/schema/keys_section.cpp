@@ -108,10 +108,12 @@ struct ExpectedKey {
   std::string_view remedy;  ///< what to write instead
 };
 
-constexpr std::array kExpectedKeys{ExpectedKey{
-    "errors", "tolerance", "linear",
-    "write linear = { distribution = \"uniform\", half_width = \"0.02 mm\" }, and angular = { distribution = "
-    "\"uniform\", half_width = \"0.02 deg\" }"}};
+constexpr std::array kExpectedKeys{
+    ExpectedKey{
+        "errors", "tolerance", "linear",
+        "write linear = { distribution = \"uniform\", half_width = \"0.02 mm\" }, and angular = { distribution = "
+        "\"uniform\", half_width = \"0.02 deg\" }"},
+    ExpectedKey{"run", "threads", "seed", "give it on the command line: --threads N"}};
 
 /// The path of the only table of the file, not inside another one, that has this key; empty if none or several have it.
 std::string_view table_with(std::string_view key, const StudyTables& tables) {

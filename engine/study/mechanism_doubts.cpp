@@ -122,10 +122,29 @@ std::vector<std::string> workspace_doubts(const Study& study, const PoseSet& pos
   return list;
 }
 
+/// A question about the first error of which given machines (ErrorModel::machines) have a value above half of
+/// Model::error_bound(), because it may be a size instead of a deviation from the nominal size. Empty if there is none.
+static std::string given_size_doubt(const Study& study, const Model& model) {
+  constexpr double kShare = 0.5;
+  if (!study.errors.machines) return {};
+  for (const FactorIndex error : study.errors.machines->factors) {
+    const ErrorBound bound = model.error_bound(error);
+    for (const double value : study.errors.machines->column(error)) {
+      if (std::abs(value) <= kShare * bound.size) continue;
+      const Factor& factor = study.model().factors[error.value];
+      return asked_back(fmt::format(
+          "a machine has the error {} = {}, {} is {}, and the table has deviations from the nominal size", factor.name,
+          readable_text({value, factor.dimension}), bound.part, readable_text({bound.size, factor.dimension})));
+    }
+  }
+  return {};
+}
+
 std::vector<std::string> size_doubts(const Study& study, const Model& model) {
   const StudyKind& kind = *study.analysis.kind;
   if (kind.varies == Varies::none || kind.finds_sizes) return {};
   std::vector<std::string> list;
+  if (std::string given = given_size_doubt(study, model); !given.empty()) list.push_back(std::move(given));
   for (const auto& [dimension, share] : {std::pair(Dimension::length, 1.0 / 10.0), {Dimension::angle, 1.0 / 18.0}}) {
     for (const FactorIndex error : study.analysis.factors) {
       const Factor& factor = study.model().factors[error.value];
@@ -146,7 +165,7 @@ std::vector<std::string> size_doubts(const Study& study, const Model& model) {
 std::string zones_doubt(const Study& study) {
   if (study.errors.unused_zone.empty()) return {};
   return asked_back(
-      fmt::format("the zones of the drawing, such as that of {}, are not used, because [errors] has no zones, so the "
+      fmt::format("zones of the drawing, such as that of {}, are not used, because [errors] has no key zones, so the "
                   "errors of features have the size errors.linear (to use the zones, write errors.zones = {{ "
                   "distribution = \"normal\", sigmas = 3 }})",
                   study.errors.unused_zone));

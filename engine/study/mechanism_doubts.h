@@ -27,8 +27,9 @@ std::vector<std::string> workspace_doubts(const Study& study, const PoseSet& pos
 
 /// Questions about the standard deviations of drawn errors, at most one for lengths and one for angles. A question
 /// names the first error whose standard deviation is more than a tenth of Model::error_bound() or, for an angle, more
-/// than an eighteenth of it (10 deg if the bound is half a turn). There are no questions if the kind of study varies no
-/// errors or has StudyKind::finds_sizes. model: the mechanism of the study.
+/// than an eighteenth of it (10 deg if the bound is half a turn). A further question is about the first value of given
+/// machines that is more than half of the bound, because it may be a size instead of a deviation. There are no
+/// questions if the kind of study varies no errors or has StudyKind::finds_sizes. model: the mechanism of the study.
 std::vector<std::string> size_doubts(const Study& study, const Model& model);
 
 /// A question if features of the drawing vary with the size of all lengths although they have zones

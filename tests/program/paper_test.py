@@ -303,6 +303,10 @@ class Paper(ProgramTest):
         self.assertIn("The index of an error is the standard deviation of the response over that of the error", words)
         self.assertIn("The equations of the mechanism were solved exactly.", words)
         self.assertEqual(sources, ["poesy", "du2022", "zou2008"])
+        for_latex = self.succeeds("show", "exact.h5", "--method", "--latex")
+        self.assertEqual(for_latex.replace("\\", "").split("@misc")[0].split(), self.succeeds("show", "exact.h5", "--method")
+                         .split("@misc")[0].split())
+        self.assertNotIn("_", for_latex.split("@misc")[0].replace("\\_", ""))
 
     def test_the_method_states_a_calibration(self):
         for path in (MECHANISMS.parent / "calibration").iterdir():

@@ -55,13 +55,14 @@ std::string passes(const StoredResult& result, std::size_t r) {
 }
 
 /// A note like "part 17 is worst in linear_deformation: 0.123 mm at pose 4; 38 of 40 pass". Empty if the rows of errors
-/// have no labels, or if none was solved.
+/// have no labels, if none was solved, or if the response is zero but for rounding.
 std::string worst_note(const StoredResult& result, std::size_t r) {
   const RowLabels& labels = evaluation_of(result).labels;
   if (labels.names.empty()) return {};
   const std::vector<RowOutcome> outcomes = row_outcomes(evaluation_of(result), r);
   const std::size_t worst = worst_row(outcomes);
-  if (worst == outcomes.size()) return {};
+  constexpr double kRounding = 1e-12;  // SI
+  if (worst == outcomes.size() || std::abs(outcomes[worst].extreme) <= kRounding) return {};
   const NamedUnit& response = result.responses[r];
   return fmt::format("{} {} is worst in {}: {} at {}{}", labels.column, labels.names[worst], response.name,
                      response_text(response, outcomes[worst].extreme), place_text(result, outcomes[worst].pose),

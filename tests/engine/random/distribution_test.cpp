@@ -105,7 +105,7 @@ TEST(MeasuredDistribution, KnowsItsValues) {
 
 TEST(MeasuredDistribution, RefusesWhatIsNoSample) {
   const auto refused = [](std::vector<double> values) { return refusal([&] { Distribution::measured(values); }); };
-  EXPECT_EQ(refused({1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0}), "values must be at least 8, not 7");
+  EXPECT_EQ(refused({1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0}), "number of values must be at least 8, not 7");
   EXPECT_EQ(refused(std::vector<double>(20, 1.0)), "values must not all be equal");
   std::vector<double> bad = kMeasured;
   bad[3] = kNaN;

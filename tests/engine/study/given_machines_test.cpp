@@ -112,7 +112,7 @@ TEST_F(GivenMachines, AreRefusedWhereTheyMakeNoSense) {
       study_text("machines = ^{ columns = [\"delta_1\"], rows = [[1e-3], [1e-3]] }\n"),
       {"errors.machines has the column 'delta_1', whose values must not all be equal", "analysis.background"});
   expect_refused(study_text("machines = ^{ columns = [\"delta_1\"], rows = [[1e-3]] }\n"),
-                 {"errors.machines has the column 'delta_1', whose values must be at least 2, not 1"});
+                 {"errors.machines has the column 'delta_1', whose number of values must be at least 2, not 1"});
 }
 
 TEST_F(GivenMachines, AreRefusedWithLineAndColumnOfTheTable) {
