@@ -22,6 +22,7 @@ struct FigureOptions {
   std::string figure;
   std::string response;
   std::string size = "85mm";
+  std::optional<std::size_t> top;  ///< largest number of bars of a ranking
   std::string python;
 };
 
@@ -46,6 +47,8 @@ bool may_be_replaced(const std::string& path) {
   return content && (content->empty() || content->find("atplotlib") != std::string::npos);
 }
 
+constexpr std::size_t kMostBars = 1000;
+
 constexpr const char* kPythonVariable = "POESY_PYTHON";
 
 /// The Python that draws: the one that the option names, otherwise the one in the variable POESY_PYTHON, otherwise
@@ -67,6 +70,7 @@ int figure(const FigureOptions& options) {
   std::vector<std::string> words{python,     "-c",        kDraw,    plain(options.result),
                                  "--output", plain(path), "--size", options.size};
   if (!options.response.empty()) words.insert(words.end(), {"--response", options.response});
+  if (options.top) words.insert(words.end(), {"--top", std::to_string(*options.top)});
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -86,6 +90,7 @@ Command& add_figure(Command& program) {
   command.add_value("--response", options.response, "NAME",
                     "response, or a sweep's figure of merit; default: the one of poesy show");
   command.add_value("--size", options.size, "WIDTH", "width; default: 85mm, one column of a journal; 170mm are two");
+  command.add_whole_number("--top", options.top, "N", "at most N bars of a ranking", 1, kMostBars);
   command.add_value(
       "--python", options.python, "PATH",
       fmt::format("the Python that draws; default: that of the variable {}, or python3", kPythonVariable));

@@ -69,6 +69,9 @@ class Figures(FolderTest):
         self.assertGreater(ranked, 15)
         label = poesy.figure(found).axes[0].get_xlabel()
         self.assertTrue(label.endswith(f"the first 15 of {ranked}"), label)  # the label is not wrapped
+        axes = poesy.figure(found, top=3).axes[0]
+        self.assertEqual(len(axes.patches), 3)
+        self.assertIn(f"the first 3 of {ranked}", axes.get_xlabel())
 
     def test_widths(self):
         for size, expected in (("85mm", 85.0), ("170 mm", 170.0), ("8.5 cm", 85.0), (100, 100.0), ("4in", 101.6)):

@@ -17,9 +17,11 @@ def main(arguments: list[str] | None = None) -> int:
     figure.add_argument("-o", "--output", required=True, metavar="FIGURE", help="FIGURE.pdf, .svg or .png")
     figure.add_argument("--response", metavar="NAME", help="response; default: the one of poesy show")
     figure.add_argument("--size", default="85mm", metavar="WIDTH", help="85mm (a column, default) or 170mm (a page)")
+    figure.add_argument("--top", type=int, metavar="N", help="at most N bars of a ranking")
     asked = parser.parse_args(arguments)
     try:
-        poesy.figure(poesy.read(asked.result), asked.output, response=asked.response, size=asked.size)
+        poesy.figure(poesy.read(asked.result), asked.output, response=asked.response, size=asked.size,
+                     **({} if asked.top is None else {"top": asked.top}))
     except (poesy.FileError, OSError) as error:
         print(f"poesy: {error}", file=sys.stderr)
         return 3

@@ -43,13 +43,14 @@ def figure(
     *,
     response: str | None = None,
     size: str | float = "85 mm",
+    top: int = _MOST_BARS,
 ) -> Figure:
     """Draws the figure of a result for a paper, and writes it to `path` if this is given.
 
     ====================================================  ==============================================================
     kind                                                  figure
     ====================================================  ==============================================================
-    sensitivity, sobol, monte-carlo, allocation,          what `Result.ranking` ranks, at most 15 bars, with intervals
+    sensitivity, sobol, monte-carlo, allocation,          what `Result.ranking` ranks, at most `top` bars, with intervals
     identification
     coupling, evaluate                                    the response over the poses
     sweep                                                 the first figure of merit over the values, with intervals
@@ -67,6 +68,8 @@ def figure(
         Response to draw; default: that of `poesy show`. For a sweep the figure of merit, such as "yield".
     size
         Width of the figure: "85 mm" for a column, "170 mm" for a page, or any from 40 to 400 mm. A number is in mm.
+    top
+        Largest number of bars of a ranking.
 
     Raises
     ------
@@ -81,7 +84,7 @@ def figure(
     width = _width(size)
     if path is not None and Path(path).suffix not in _ENDS:
         raise StudyError(f"{os.fspath(path)}: a figure ends in {', '.join(_ENDS)}")
-    draw, height = _drawing(result, response)
+    draw, height = _drawing(result, response, top)
     with matplotlib.rc_context(_STYLE):
         drawn = Figure(figsize=(width / _INCH, height(width) / _INCH), layout="constrained")
         axes = drawn.add_subplot()
@@ -134,7 +137,7 @@ def _save(drawn: Figure, path: Path) -> None:
         partial.unlink(missing_ok=True)
 
 
-def _drawing(result: Result, response: str | None) -> tuple[Callable[[Axes], object], Callable[[float], float]]:
+def _drawing(result: Result, response: str | None, top: int) -> tuple[Callable[[Axes], object], Callable[[float], float]]:
     """The function that draws the figure of this kind, and the function that gives its height for a width, both in
     mm."""
     plot = result.plot
@@ -147,12 +150,12 @@ def _drawing(result: Result, response: str | None) -> tuple[Callable[[Axes], obj
     ranked = len(result.ranking(response).rows)
 
     def ranking(axes: Axes) -> None:
-        plot.ranking(response, top=_MOST_BARS, ax=axes)
-        if ranked > _MOST_BARS:
+        plot.ranking(response, top=top, ax=axes)
+        if ranked > top:
             # Blanks at which lines do not break; _fit_texts() makes them usual ones.
-            axes.set_xlabel(f"{axes.get_xlabel()}: the\u00a0first\u00a0{_MOST_BARS}\u00a0of\u00a0{ranked}")
+            axes.set_xlabel(f"{axes.get_xlabel()}: the\u00a0first\u00a0{top}\u00a0of\u00a0{ranked}")
 
-    return ranking, (lambda _: 14.0 + 4.2 * min(ranked, _MOST_BARS))
+    return ranking, (lambda _: 14.0 + 4.2 * min(ranked, top))
 
 
 def _residuals(result: Result, axes: Axes) -> None:
