@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <iterator>
 #include <optional>
+#include <set>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -62,14 +64,19 @@ void add_first_order_notes(const StoredResult& result, std::vector<Table>& table
   }
 }
 
-/// Removes the errors that no table names from a table of errors, unless no error would remain.
+/// Removes the errors that no table names from a table of errors, unless no error would remain. A cell may name several
+/// errors, with blanks between them.
 void keep_named(const std::vector<Table>& tables, Table& errors) {
-  const auto is_named = [&](const std::vector<Cell>& error) {
-    const auto has_it = [&](const std::vector<Cell>& row) {
-      return std::ranges::find(row, error.front().text, &Cell::text) != row.end();
-    };
-    return std::ranges::any_of(tables, [&](const Table& table) { return std::ranges::any_of(table.rows, has_it); });
-  };
+  std::set<std::string> words;
+  for (const Table& table : tables) {
+    for (const std::vector<Cell>& row : table.rows) {
+      for (const Cell& cell : row) {
+        std::istringstream text(cell.text);
+        words.insert(std::istream_iterator<std::string>(text), {});
+      }
+    }
+  }
+  const auto is_named = [&](const std::vector<Cell>& error) { return words.contains(error.front().text); };
   if (std::ranges::none_of(errors.rows, is_named)) return;
   std::erase_if(errors.rows, [&](const std::vector<Cell>& error) { return !is_named(error); });
 }

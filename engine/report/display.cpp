@@ -96,6 +96,20 @@ std::vector<std::string> only_in(const std::vector<std::string>& these, const st
   return list;
 }
 
+std::string_view verdict_word(YieldVerdict::Decision decision) {
+  switch (decision) {
+    case YieldVerdict::Decision::not_asked:
+      return "";
+    case YieldVerdict::Decision::kept:
+      return "PASS";
+    case YieldVerdict::Decision::not_kept:
+      return "FAIL";
+    case YieldVerdict::Decision::undecided:
+      return "UNDECIDED";
+  }
+  throw std::logic_error("unknown decision on a yield");
+}
+
 std::string metric_text(const StoredResult& result) {
   if (result.metric == "platform") {
     return fmt::format("platform, by displacement of {}", counted(result.metric_points.size(), "point", "points"));

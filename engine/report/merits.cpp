@@ -20,6 +20,15 @@ namespace poesy {
 namespace {
 
 constexpr int kDigits = 4;
+/// Notes on the table of figures of merit, if some have intervals and if none has.
+/// @{
+constexpr std::string_view kIntervals =
+    "low, high: intervals of the value, and of its change as if both results were drawn independently; common draws "
+    "make it wider than it need be";
+constexpr std::string_view kNoIntervals =
+    "no verdict, because these numbers have no intervals; a study of machines with a limit has a yield with one, and "
+    "poesy sweep compares designs by the same machines";
+/// @}
 
 const Merit* find(std::span<const Merit> merits, std::string_view what) {
   const auto at = std::ranges::find(merits, what, &Merit::what);
@@ -201,11 +210,10 @@ std::string compared_response(std::span<const StoredResult* const> results, cons
 }
 
 /// The verdict on the wanted yield: "FAIL (90 % wanted)"; empty if the study asks for no yield.
-static std::string asked_text(const YieldVerdict& yield) {
-  using enum YieldVerdict::Decision;
-  if (yield.decision == not_asked || !(yield.asked > 0.0)) return {};
-  const std::string_view word = yield.decision == kept ? "PASS" : yield.decision == not_kept ? "FAIL" : "UNDECIDED";
-  return fmt::format("{} ({} wanted)", word, percent_text(yield.asked));
+static std::string verdict_text(const YieldVerdict& yield) {
+  const std::string_view word = verdict_word(yield.decision);
+  return word.empty() || !(yield.asked > 0.0) ? std::string()
+                                              : fmt::format("{} ({} wanted)", word, percent_text(yield.asked));
 }
 
 Merit yield_merit(const YieldVerdict& yield) {
@@ -218,7 +226,7 @@ Merit yield_merit(const YieldVerdict& yield) {
           .high = 100.0 * interval.high,
           .most_best = true,
           .narrows = !yield.with_parts.has_value(),
-          .asked = asked_text(yield)};
+          .asked = verdict_text(yield)};
 }
 
 std::vector<std::vector<Merit>> compared_merits(const ReportKind& kind, std::span<const StoredResult* const> results,
@@ -257,7 +265,7 @@ MeritChange change_of(const Merit& a, const Merit& b) {
 
 /// A clause with the verdicts of results on the value of a figure of merit that each study asks for: "A FAIL (90 %
 /// wanted), B PASS (90 % wanted)". Empty if no study asks for one. merits: each result's letter and figure of merit.
-static std::string asked_text(std::span<const std::pair<char, const Merit*>> merits) {
+static std::string verdicts_text(std::span<const std::pair<char, const Merit*>> merits) {
   std::vector<std::string> parts;
   for (const auto& [letter, merit] : merits) {
     if (!merit->asked.empty()) parts.push_back(fmt::format("{} {}", letter, merit->asked));
@@ -277,31 +285,26 @@ std::optional<Table> merits_table(std::span<const std::vector<Merit>> results) {
                           main_column(number_column("value", "value")), number_column("low", "low", "", 1),
                           number_column("high", "high", "", 1), text_column("unit", "unit")},
               .notes = {}};
-  const auto has_interval = [](const Merit& merit) { return !std::isnan(merit.low); };
-  if (std::ranges::any_of(results, [&](const auto& list) { return std::ranges::any_of(list, has_interval); })) {
-    table.notes.emplace_back(
-        "low, high: intervals of the value, and of its change as if both results were drawn independently; common "
-        "draws make it wider than it need be");
-  } else {
-    table.notes.emplace_back(
-        "no verdict, because these numbers have no intervals; a study of machines with a limit has a yield with one, "
-        "and poesy sweep compares designs by the same machines");
-  }
   NoVerdicts no_verdicts;
+  bool has_interval = false;
   for (const std::string& what : shared) {
     const Merit& first = *find(results.front(), what);
     std::vector<std::pair<char, const Merit*>> all;
     for (std::size_t n = 0; n < results.size(); ++n) {
       const Merit& merit = *find(results[n], what);
       all.emplace_back(letter_of(n), &merit);
+      has_interval = has_interval || !std::isnan(merit.low);
       table.rows.push_back(row_of(first, merit, n));
       if (!merit.others.empty()) add_no_verdict(merit, letter_of(n), what, no_verdicts);
       std::string remedy = n == 0 ? std::string() : remedy_text(first, merit, n);
       if (!remedy.empty()) table.notes.push_back(std::move(remedy));
     }
-    if (std::string asked = asked_text(all); !asked.empty()) table.notes.push_back(what + ": " + asked);
+    if (std::string verdicts = verdicts_text(all); !verdicts.empty()) {
+      table.notes.push_back(what + ": " + verdicts);
+    }
     if (!first.note.empty()) table.notes.push_back(first.note);
   }
+  table.notes.insert(table.notes.begin(), std::string(has_interval ? kIntervals : kNoIntervals));
   for (const auto& [reason, merits] : no_verdicts) {
     table.notes.push_back(fmt::format("no verdict on {}, because {}", fmt::join(merits, " and "), reason));
   }
@@ -316,10 +319,11 @@ std::string merit_sentences(const std::vector<Merit>& a, const std::vector<Merit
     if (other == nullptr) continue;
     const bool is_of_limit = merit.what.starts_with(kLimitMerit);
     if (is_of_limit && change_of(merit, *other).verdict > Change::worse) continue;  // only in merits_table()
-    const std::string asked = asked_text(std::array{std::pair('A', &merit), std::pair(letter, other)});
+    const std::string verdicts = verdicts_text(std::array{std::pair('A', &merit), std::pair(letter, other)});
     if (other->others.empty()) {
-      sentences.push_back(sentence(merit, *other, letter) +
-                          (asked.empty() ? "" : fmt::format(" Verdict on the {} of each: {}.", merit.what, asked)));
+      sentences.push_back(
+          sentence(merit, *other, letter) +
+          (verdicts.empty() ? "" : fmt::format(" Verdict on the {} of each: {}.", merit.what, verdicts)));
     } else {
       add_no_verdict(*other, letter, values_text(merit, *other, letter), no_verdicts);
     }

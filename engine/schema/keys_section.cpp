@@ -127,14 +127,15 @@ std::string_view table_with(std::string_view key, const StudyTables& tables) {
   return found;
 }
 
-/// What to write instead of an unknown key of a table.
-std::string remedy_for_unknown(std::string_view table, std::string_view key, std::span<const std::string_view> known,
-                               const StudyTables& tables) {
+/// What to write instead of an unknown key of a table. what: "key", or the noun for names of the model.
+std::string remedy_for_unknown(std::string_view what, std::string_view table, std::string_view key,
+                               std::span<const std::string_view> known, const StudyTables& tables) {
   const auto expected = std::ranges::find_if(kExpectedKeys, [&](const ExpectedKey& one) {
     return one.table == table && one.key == key && std::ranges::find(known, one.beside) != known.end();
   });
   if (expected != kExpectedKeys.end()) return std::string(expected->remedy);
-  const std::string_view owner = nearest(key, known).empty() ? table_with(key, tables) : std::string_view();
+  const bool may_be_misplaced = what == "key" && nearest(key, known).empty();
+  const std::string_view owner = may_be_misplaced ? table_with(key, tables) : std::string_view();
   return owner.empty() ? suggestion(key, known) : fmt::format("it is a key of [{}]", owner);
 }
 
@@ -287,7 +288,7 @@ void StudySection::allow(std::span<const std::string_view> known, std::string_vi
   for (const std::string& key : keys()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     throw InputError(place_of_key(key), "unknown " + std::string(what) + " '" + printable(key) + "'" + where(),
-                     remedy_for_unknown(name_, key, known, *tables_));
+                     remedy_for_unknown(what, name_, key, known, *tables_));
   }
 }
 

@@ -12,7 +12,8 @@ namespace poesy {
 namespace {
 
 namespace policies = boost::math::policies;
-/// The binomial distribution of a number B. Its quantile p is the smallest k with P(B <= k) >= p.
+/// The binomial distribution of a number B. Its quantile p is the smallest k with P(B <= k) >= p. Computed in double,
+/// because Boost's default of long double takes several times as long.
 using Binomial = boost::math::binomial_distribution<
     double, policies::policy<policies::discrete_quantile<policies::integer_round_up>, policies::promote_double<false>>>;
 

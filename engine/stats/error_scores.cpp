@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/base/contract.h"
+#include "engine/base/nan.h"
 
 namespace poesy {
 namespace {
@@ -45,6 +46,15 @@ double NormalScore::growth_factor() const {
   const double ratio = half_width / sigma;
   if (std::isinf(ratio)) return 1.0 / kErrorGrowth;
   return std::erf(ratio / std::numbers::sqrt2) / std::erf(ratio / kErrorGrowth / std::numbers::sqrt2) / kErrorGrowth;
+}
+
+// The growth score G = f exp(a z^2) - 1 has the mean 0, so E[G^2] = f^2 E[exp(2 a z^2)] - 1. The integrand of this mean
+// is the density of a normal with the standard deviation s, times s.
+double NormalScore::growth_square() const {
+  const double s = kErrorGrowth / std::sqrt(2.0 - kErrorGrowth * kErrorGrowth);
+  const double ratio = half_width / sigma / std::numbers::sqrt2;
+  const double inside = std::isinf(ratio) ? 1.0 : std::erf(ratio / s) / std::erf(ratio);
+  return growth_factor() * growth_factor() * s * inside - 1.0;
 }
 
 PolynomialScore::PolynomialScore(std::span<const double> points, std::span<const double> weights, std::size_t degree) {
@@ -173,6 +183,13 @@ ScoreMoments growth_moments(const ErrorScores& scores, std::size_t error) {
   constexpr double kStep = kErrorGrowth - 1.0;
   const auto [square, cube] = score_moments(scores, error);
   return {kStep * kStep * square, kStep * kStep * kStep * cube};
+}
+
+double growth_square(const ErrorScores& scores, std::size_t error) {
+  const ErrorScore& score = scores.each[error];
+  if (const auto* normal = std::get_if<NormalScore>(&score)) return normal->growth_square();
+  const bool is_known = !std::holds_alternative<std::monostate>(score);
+  return is_known ? growth_moments(scores, error).square : kNaN;
 }
 
 }  // namespace poesy

@@ -35,6 +35,7 @@ struct NormalScore {
   /// truncated it is exp(z^2 (1 - 1/g^2) / 2) / g - 1, with g = kErrorGrowth.
   /// @{
   double growth_factor() const;
+  double growth_square() const;  ///< The mean square of the growth score over all machines.
   static constexpr double growth_exponent() { return 0.5 * (1.0 - 1.0 / (kErrorGrowth * kErrorGrowth)); }
   /// @}
 };
@@ -120,7 +121,9 @@ struct ErrorScores {
 ScoreMoments score_moments(const ErrorScores& scores, std::size_t error);
 /// The moments of the growth score of one error. For an error of a NormalBlock the growth score is approximated by (g -
 /// 1) S, with the score S and g = kErrorGrowth, because the ratio of the densities may have no variance if errors are
-/// strongly correlated.
+/// strongly correlated. Precondition: the error has a PolynomialScore or a BlockScore.
 ScoreMoments growth_moments(const ErrorScores& scores, std::size_t error);
+/// The mean square of the growth score of one error over all machines; NaN if the score is not known.
+double growth_square(const ErrorScores& scores, std::size_t error);
 
 }  // namespace poesy

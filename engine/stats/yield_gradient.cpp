@@ -184,6 +184,15 @@ std::vector<Estimate> ScoreSums::change(double conf_level) const {
   return change;
 }
 
+std::vector<double> ScoreSums::change_sd_without_effect() const {
+  const auto rejects = static_cast<double>(rejects_);
+  std::vector<double> sd;
+  for (std::size_t p = 0; p < scores_.each.size(); ++p) {
+    sd.push_back(std::sqrt(growth_square(scores_, p) * rejects) / static_cast<double>(machines_));
+  }
+  return sd;
+}
+
 bool ScoreSums::dominates(std::size_t error, const Estimate& score) const {
   if (!std::holds_alternative<PolynomialScore>(scores_.each[error])) return false;
   return score.interval.low > 0.0 && (is_below_zero(less_[error], rejects_) || is_below_zero(more_[error], rejects_));

@@ -83,6 +83,10 @@ class ScoreSums {
   /// others stay as they are. The intervals and the cases with NaN are those of gradient().
   std::vector<Estimate> change(double conf_level) const;
 
+  /// [errors] The standard deviation that change() would have by chance if the error had no effect. Such an error is
+  /// drawn among the rejects as among all machines. NaN for errors without a score.
+  std::vector<double> change_sd_without_effect() const;
+
   void state(Archive& archive);  ///< Reads or writes the sums, bit for bit.
 
  private:

@@ -418,13 +418,16 @@ void check_override(const StudySection& overrides, const Study& study) {
   overrides.allow(known, "factor");
 }
 
+/// Returns true if a value of [errors.override] has only the key `draws`, so that it does not state a size.
+bool has_only_draws(const StudyValue& value) {
+  return value.is_section() && value.section().keys() == std::vector<std::string>{"draws"};
+}
+
 /// Reads a value of [errors.override]. usual: the distribution and the draws of the error if [errors.override] does not
-/// name it. If the value has only the key `draws`, the error keeps the usual distribution.
+/// name it. If has_only_draws(), the error keeps the usual distribution.
 StatedError read_own_error(const StudyValue& value, Dimension dimension, StudyUse use, const StatedError& usual,
                            std::vector<std::string>& doubts) {
-  if (!value.is_section() || value.section().keys() != std::vector<std::string>{"draws"}) {
-    return read_error(value, dimension, use, usual.distribution, doubts);
-  }
+  if (!has_only_draws(value)) return read_error(value, dimension, use, usual.distribution, doubts);
   Parameters parameters;
   read_key(row_of(distribution_keys(), "draws"), value.section().require("draws"), parameters, Nothing());
   return {usual.distribution, parameters.draws};
@@ -815,8 +818,14 @@ void check_machines(const Study& study, const Reading& reading) {
             "write no more, or leave it out to take all of them");
 }
 
+/// Returns true if [errors.override] states the size of the factor.
+static bool overrides_size(const StudySection& errors, const Factor& factor) {
+  const auto own = override_of(errors.section("override"), factor.name);
+  return own && !has_only_draws(*own);
+}
+
 bool states_size(const StudySection& errors, const Factor& factor) {
-  return errors.find(error_kind(factor.dimension)) || override_of(errors.section("override"), factor.name);
+  return errors.find(error_kind(factor.dimension)) || overrides_size(errors, factor);
 }
 
 /// Throws InputError, because an error of a feature varies although nothing states its size.
@@ -851,14 +860,13 @@ static std::string default_text(std::span<const FactorIndex> errors, Dimension d
 /// of_parts: errors whose sizes an allocation finds.
 static std::string feature_without_zone(const Study& study, const StudySection& errors,
                                         std::span<const FactorIndex> of_parts) {
-  const StudySection overrides = errors.section("override");
   for (const Feature& feature : study.model().features) {
     if (study.errors.zones || (!feature.location && !feature.orientation)) continue;
     for (const FactorIndex error : feature.errors()) {
       const bool varies = std::ranges::find(study.analysis.factors, error) != study.analysis.factors.end();
       const bool is_of_part = std::ranges::find(of_parts, error) != of_parts.end();
       const bool has_own_size =
-          is_given(study, error.value) || override_of(overrides, study.model().factors[error.value].name);
+          is_given(study, error.value) || overrides_size(errors, study.model().factors[error.value]);
       if (varies && !is_of_part && !has_own_size) return feature.name;
     }
   }

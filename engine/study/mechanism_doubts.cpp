@@ -132,9 +132,12 @@ static std::string given_size_doubt(const Study& study, const Model& model) {
     for (const double value : study.errors.machines->column(error)) {
       if (std::abs(value) <= kShare * bound.size) continue;
       const Factor& factor = study.model().factors[error.value];
-      return asked_back(fmt::format(
-          "a machine has the error {} = {}, {} is {}, and the table has deviations from the nominal size", factor.name,
-          readable_text({value, factor.dimension}), bound.part, readable_text({bound.size, factor.dimension})));
+      return fmt::format(
+          "errors.machines has {} = {}, more than half of {} ({}), but its values are deviations from the nominal "
+          "size; "
+          "are these sizes?",
+          factor.name, readable_text({value, factor.dimension}), bound.part,
+          readable_text({bound.size, factor.dimension}));
     }
   }
   return {};
@@ -164,11 +167,11 @@ std::vector<std::string> size_doubts(const Study& study, const Model& model) {
 
 std::string zones_doubt(const Study& study) {
   if (study.errors.unused_zone.empty()) return {};
-  return asked_back(
-      fmt::format("zones of the drawing, such as that of {}, are not used, because [errors] has no key zones, so the "
-                  "errors of features have the size errors.linear (to use the zones, write errors.zones = {{ "
-                  "distribution = \"normal\", sigmas = 3 }})",
-                  study.errors.unused_zone));
+  return fmt::format(
+      "errors.zones is missing, so zones of the drawing, such as that of {}, are not used, and the errors of features "
+      "have the size errors.linear; is that meant? If not, write errors.zones = {{ distribution = \"normal\", sigmas = "
+      "3 }}",
+      study.errors.unused_zone);
 }
 
 std::string correction_doubt(const Study& study, const Model& model) {

@@ -89,8 +89,9 @@ class AssemblyKernel {
     }
   }
 
-  /// A displacement or mismatch below this is rounding: solves end at some 1e-16 (units of the reach, or rad). Without
-  /// this, a response that is always zero would have values of many magnitudes, whose statistics take long.
+  /// A displacement or mismatch (in units of the reach, or rad) below this is written as 0. Rounding leaves numbers of
+  /// 1e-16 and of any smaller magnitude; without this limit the values of a response that is zero would have so many
+  /// magnitudes that their statistics take long.
   static constexpr double kRounding = 1e-20;
   /// The change of the wrenches counts as rounding if the square of the relative change is at most this.
   static constexpr double kWrenches = 1e-24;

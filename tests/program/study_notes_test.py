@@ -122,6 +122,23 @@ class StudyNotes(ProgramTest):
         self.write_rps(RPS.replace("0.1 mm", "2 mm"))
         self.assertEqual(self.errors_of("check", "study.toml"), "")
 
+    def test_geometry_with_a_decimal_point_in_the_wrong_place(self):
+        for a, asked in (("25 mm", True), ("24 mm", True), ("2500 mm", True), ("26 mm", False), ("240 mm", False)):
+            self.write_rps(RPS.replace('"rps.toml"', f'"rps.toml", geometry = {{ a = "{a}" }}'))
+            said = self.poesy("check", "study.toml").stderr.decode()
+            self.assertEqual(f"a = {a}; the mechanism's file has 250 mm; is that meant?" in said, asked, (a, said))
+
+    def test_sizes_in_a_table_of_machines(self):
+        self.write_rps(RPS.replace("0.1 mm", "80 mm"))
+        bound = float(re.search(r" is ([\d.]+) mm; is that meant", self.errors_of("check", "study.toml"))[1])
+        machines = RPS.replace('kind = "sensitivity"', 'kind = "monte-carlo"\ndraws = "per machine"')
+        machines = machines.replace("samples = 20\n", "").replace("[errors]", '[errors]\nmachines = "machines.csv"')
+        for share, asked in ((0.4, False), (0.6, True)):
+            self.write_rps(machines)
+            self.write("machines.csv", f"delta_1_1_x [mm]\n0.1\n{share * bound}\n")
+            said = self.errors_of("check", "study.toml")
+            self.assertEqual("errors.machines has delta_1_1_x = " in said and "are these sizes?" in said, asked, said)
+
     def write_tricept(self, z):
         self.write("tricept.toml", (GALLERY / "tricept/tricept.toml").read_text())
         box = f'workspace = {{ rx = ["-20 deg", "20 deg"], ry = ["-20 deg", "20 deg"], z = {z} }}'

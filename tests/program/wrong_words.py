@@ -343,6 +343,8 @@ WRONG_STUDIES = [
      'is the bare number 200; write it with a unit, e.g.'),
     ('zones = { distribution = "normal", sigmas = 3 }', 'zones = { distribution = "normal", sigmas = 1e308 }',
      'errors.zones.sigmas is 1e+308; it must lie between 0 and'),
+    ('samples = 3\n', 'fidelity = "exact"\n', "unknown key 'fidelity' in [analysis]; it is a key of [mechanism]"),
+    ('samples = 3\n', 'run.threads = 2\n', "unknown key 'run' in [analysis]"),
 ]
 
 WRONG_PARTS = [
@@ -350,6 +352,10 @@ WRONG_PARTS = [
      "column 'rod_9' is not a factor of the model; did you mean 'rod_1'?"),
     ('[um]', '[deg]',
      'of angle, but this column is a length; write one of: m, cm, mm,'),
+    (' [um]', '/um',
+     "column 'rail_x_1/um' is not a factor of the model; write its unit in brackets: rail_x_1 [um]"),
+    (' [um]', ' in um',
+     "column 'rail_x_1 in um' is not a factor of the model; write its unit in brackets: rail_x_1 [um]"),
     ('-3e-6', 'long',
      "in column 'rod_2' is not a finite number; write a plain number, in SI"),
     ('b,-7,1e-6', 'b,-7',

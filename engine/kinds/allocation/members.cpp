@@ -108,27 +108,37 @@ bool differ_in_one_number(const std::string& one, const std::string& other) {
   return numbers == 1;
 }
 
+/// The only error of limb `limb` with the frame and the dimension of `factor` whose name differs from that of `factor`
+/// in one number. None if there is no such error, or if there are several.
+std::optional<FactorIndex> only_similar(const Factor& factor, std::size_t limb, const ModelDescription& model) {
+  std::optional<FactorIndex> only;
+  for (std::size_t f = 0; f < model.factors.size(); ++f) {
+    const Factor& other = model.factors[f];
+    if (other.limb != limb || other.frame != factor.frame || other.dimension != factor.dimension) continue;
+    if (!differ_in_one_number(factor.name, other.name)) continue;
+    if (only) return std::nullopt;
+    only = FactorIndex(f);
+  }
+  return only;
+}
+
 /// The error of limb `limb` that corresponds to `factor`: it has the same frame and dimension, and its name differs
-/// only in the number of the limb. If there is none, the only such error whose name differs in any one number, such as
-/// that of a copy of a limb with a name. None if there is no such error, or if there are several.
+/// only in the number of the limb. If there is none, the error that only_similar() finds, if that error finds `factor`
+/// in the same way: copies of a limb with a name have the number of the copy in the names of their errors.
 std::optional<FactorIndex> counterpart(const Factor& factor, std::size_t limb, const ModelDescription& model) {
-  const auto corresponds = [&](const Factor& other) {
-    return other.limb == limb && other.frame == factor.frame && other.dimension == factor.dimension;
-  };
   const std::string number = std::to_string(factor.limb);
   for (std::size_t at = factor.name.find(number); at != std::string::npos; at = factor.name.find(number, at + 1)) {
     if (is_digit(factor.name, at + number.size()) || (at > 0 && is_digit(factor.name, at - 1))) continue;
     std::string name = factor.name;
     const auto found = model.find_factor(name.replace(at, number.size(), std::to_string(limb)));
-    if (found && corresponds(model.factors[found->value])) return found;
+    if (!found) continue;
+    const Factor& other = model.factors[found->value];
+    if (other.limb == limb && other.frame == factor.frame && other.dimension == factor.dimension) return found;
   }
-  std::optional<FactorIndex> only;
-  for (std::size_t f = 0; f < model.factors.size(); ++f) {
-    if (!corresponds(model.factors[f]) || !differ_in_one_number(factor.name, model.factors[f].name)) continue;
-    if (only) return std::nullopt;
-    only = FactorIndex(f);
-  }
-  return only;
+  const std::optional<FactorIndex> similar = only_similar(factor, limb, model);
+  if (!similar) return std::nullopt;
+  const std::optional<FactorIndex> back = only_similar(model.factors[similar->value], factor.limb, model);
+  return back && model.factors[back->value].name == factor.name ? similar : std::nullopt;
 }
 
 /// Joins each error with its counterparts in the other listed limbs into one part.

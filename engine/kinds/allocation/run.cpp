@@ -83,22 +83,27 @@ void divide_share(std::span<const double> slopes, std::span<const ErrorFactor> w
   }
 }
 
-/// Returns true if a limit depends on this part with these tolerances (SI): if it adds more than rounding to the
-/// combined effect of all parts on a limit.
+/// Returns true if a limit depends on this part with these tolerances (SI): if the part takes more than rounding of the
+/// limit's room.
 bool has_effect(const ToleranceLimits& limits, std::span<const double> tolerance, std::size_t part) {
-  constexpr double kRounding = 1e-12;  // a smaller share of a combined effect is rounding
+  constexpr double kRounding = 1e-12;  // a smaller share of the room is rounding
   for (std::size_t l = 0; l < limits.count(); ++l) {
-    const double added = limits.row(l)[part] * tolerance[part] * tolerance[part];
-    if (std::abs(added) > kRounding * limits.need(l, tolerance)) return true;
+    const double taken = limits.row(l)[part] * tolerance[part] * tolerance[part];
+    if (std::abs(taken) > kRounding * std::max(limits.need(l, tolerance), limits.room[l])) return true;
   }
   return false;
 }
 
-/// The value of AllocationResult::bound for a part.
+/// The value of AllocationResult::bound for a part. An orientation that the drawing does not need is as wide as its
+/// location allows, so what depends on it depends on the location.
 std::uint8_t bound_of(const ToleranceProgramme& programme, const TolerancePoint& point, const ToleranceLimits& limits,
                       std::size_t part) {
   const AtBound bound = programme.at_bound(point, part);
-  const bool decides = bound != AtBound::upper || has_effect(limits, point.tolerance, part);
+  bool decides = bound != AtBound::upper || has_effect(limits, point.tolerance, part);
+  for (const Within& pair : programme.pairs()) {
+    const bool is_as_wide = pair.outer == part && programme.is_void(point, pair.inner);
+    decides = decides || (is_as_wide && has_effect(limits, point.tolerance, pair.inner));
+  }
   return decides ? static_cast<std::uint8_t>(bound) : AllocationResult::kWithoutEffect;
 }
 

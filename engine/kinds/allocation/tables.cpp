@@ -228,7 +228,8 @@ Table drawing_table(const Result& found, RowOrder order) {
   const auto idle = [&](std::size_t n) { return has_no_effect(found, n); };
   if (!found.has_zones() && std::ranges::any_of(positions(found.parts()), idle)) {
     table.notes.emplace_back(
-        "no effect: a part on which no limit depends; its T is where the search ends, not what the part needs");
+        "no effect: a part on which no limit depends; its T is where the search ends, not what the part needs; so is a "
+        "T at its upper bound");
   }
   if (std::string note = fixed_note(found); !note.empty()) table.notes.push_back(std::move(note));
   add_copies_note(found, table);

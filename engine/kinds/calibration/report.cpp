@@ -89,7 +89,7 @@ std::vector<Table> calibration_result_tables(const StoredResult& result, const T
   const CalibrationResult& found = calibration_of(result);
   std::vector<Table> tables{fitted_table(found)};
   if (!found.frame_parts.empty()) tables.push_back(frame_table(found));
-  if (!found.gain.empty()) tables.push_back(next_table(result, found));
+  if (found.converged != 0 && !found.gain.empty()) tables.push_back(next_table(result, found));
   tables.push_back(residuals_table(result));
   return tables;
 }

@@ -80,14 +80,6 @@ struct ToldErrors {
   std::size_t known = 0;   ///< number of errors whose change of the yield is known
 };
 
-/// The standard deviation of the change of the yield by a normal error without effect. Among the rejects such an error
-/// is drawn as among all machines, and its growth score (yield_gradient.h) has the mean square 1 / (g sqrt(2 - g^2)) -
-/// 1 with the growth g.
-double sd_without_effect(const YieldResult& yield) {
-  const double mean_square = 1.0 / (kErrorGrowth * std::sqrt(2.0 - kErrorGrowth * kErrorGrowth)) - 1.0;
-  return std::sqrt(mean_square * static_cast<double>(yield.rejects)) / static_cast<double>(yield.machines);
-}
-
 /// Tests the effects of errors on the yield. All errors are tested together, because some of many separate tests would
 /// show an effect by chance.
 ToldErrors told_errors(const StoredResult& result, const YieldResult& yield, const Changes& changes) {
@@ -95,7 +87,8 @@ ToldErrors told_errors(const StoredResult& result, const YieldResult& yield, con
   std::vector<Estimate> estimates;
   std::vector<double> zero_sd;
   for (std::size_t p = 0; p < changes.value.size(); ++p) {
-    zero_sd.push_back(result.factor_distribution[p] == "normal" ? sd_without_effect(yield) : 0.0);
+    const bool has_sd = !yield.change_sd_without_effect.empty() && !std::isnan(yield.change_sd_without_effect(p));
+    zero_sd.push_back(has_sd ? yield.change_sd_without_effect(p) : 0.0);
     const bool tested = changes.is_known(p) && has_any_share(result, yield, yield.mean_square_share, p);
     found.known += changes.is_known(p) ? 1 : 0;
     found.tested += tested ? 1 : 0;

@@ -97,6 +97,9 @@ const Group<YieldResult> kYield{
       Presence::where_computed},
      {"change_ci_high", &YieldResult::change_ci_high, "1", "Upper end of its interval (central limit theorem)",
       Presence::where_computed},
+     {"change_sd_without_effect", &YieldResult::change_sd_without_effect, "1",
+      "Standard deviation that the change would have by chance if the error had no effect; NaN if not known",
+      Presence::where_computed},
      {"mean_square_share", &YieldResult::mean_square_share, "1",
       "Share that the error adds, to first order, to the scatter of the limited response, of a norm to that of its "
       "vector. The scatter is the mean square about the mean over the machines, summed over all poses. NaN for a "

@@ -96,6 +96,9 @@ struct YieldResult {
   Array<double, axis::Factor> change = {};
   Array<double, axis::Factor> change_ci_low = {};   ///< lower ends of the intervals of change
   Array<double, axis::Factor> change_ci_high = {};  ///< upper ends of the intervals of change
+  /// Standard deviation that `change` would have by chance if the error had no effect; NaN if not known, as for changes
+  /// by a linear map (MappedGradient).
+  Array<double, axis::Factor> change_sd_without_effect = {};
   /// Share of each error in the scatter of each limited response (the mean square of the response about its mean over
   /// the machines, over all poses); NaN if not known.
   Array<double, axis::Response, axis::Factor> mean_square_share = {};

@@ -110,6 +110,7 @@ YieldResult yield_of(const MachineCounts& counts, const ScoreSums& scores, std::
   }
   set_all(scores.gradient(conf_level), found.gradient, found.gradient_ci_low, found.gradient_ci_high);
   set_all(scores.change(conf_level), found.change, found.change_ci_low, found.change_ci_high);
+  found.change_sd_without_effect = {found.change.lengths(), scores.change_sd_without_effect()};
   return found;
 }
 
@@ -136,7 +137,9 @@ CalibrationYields calibration_yields(const CalibrationCounts& counts, const Mach
 void set_pose_gradient(const Plan& plan, const ScoreSums& scores, YieldResult& found) {
   const std::vector<Estimate> gradient = scores.gradient(found.conf_level);
   const std::vector<Estimate> change = scores.change(found.conf_level);
+  const std::vector<double> sd_without_effect = scores.change_sd_without_effect();
   for (const std::size_t p : plan.per_pose()) {
+    found.change_sd_without_effect(p) = sd_without_effect[p];
     set_estimate(gradient[p], found.gradient, found.gradient_ci_low, found.gradient_ci_high, p);
     set_estimate(within(change[p], -found.value, 1.0 - found.value), found.change, found.change_ci_low,
                  found.change_ci_high, p);

@@ -136,6 +136,7 @@ void set_gradient(const MachineTable& table, const LinearFit& fit, std::span<con
     set_estimate(gradient.gradient(p, conf_level), yield.gradient, yield.gradient_ci_low, yield.gradient_ci_high, p);
     set_estimate(within(gradient.change(p, conf_level), -yield.value, 1.0 - yield.value), yield.change,
                  yield.change_ci_low, yield.change_ci_high, p);
+    yield.change_sd_without_effect(p) = kNaN;
   }
 }
 

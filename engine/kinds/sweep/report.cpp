@@ -348,8 +348,9 @@ std::string passes_text(const SweepResult& found) {
   const auto count = [&](std::string_view verdict) { return std::ranges::count(found.verdict.all(), verdict); };
   const std::size_t all = found.designs();
   if (static_cast<std::size_t>(count("not kept")) == all) return fmt::format("All {} designs FAIL.", all);
-  if (count("kept") == 0 && count("undecided") == 0) return {};
-  return fmt::format("{} of {} PASS.", count("kept"), counted(all, "design", "designs"));
+  if (count("kept") + count("not kept") + count("undecided") == 0) return {};
+  const std::string undecided = count("undecided") == 0 ? "" : fmt::format(", {} UNDECIDED", count("undecided"));
+  return fmt::format("{} of {} PASS{}.", count("kept"), counted(all, "design", "designs"), undecided);
 }
 
 Answer answer(const StoredResult& result) {

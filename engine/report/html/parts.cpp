@@ -16,11 +16,7 @@ namespace {
 /// The decision on a yield in words, before a sentence: "FAIL, 95 % are asked for: ". Empty if the study asks for no
 /// yield.
 std::string decision_text(const YieldVerdict& yield) {
-  using Decision = YieldVerdict::Decision;
-  const std::string_view word = yield.decision == Decision::kept        ? "PASS"
-                                : yield.decision == Decision::not_kept  ? "FAIL"
-                                : yield.decision == Decision::undecided ? "Undecided"
-                                                                        : "";
+  const std::string_view word = verdict_word(yield.decision);
   return word.empty() ? "" : fmt::format("{}, {} are asked for: ", word, percent_text(yield.asked));
 }
 
