@@ -112,14 +112,16 @@ std::vector<std::string> doubts_of(const Study& study, const SelectedPoses& pose
 
 std::string bare_error_text(std::string_view file, const ErrorTable& table, const Study& study) {
   for (std::size_t v = 0; v < table.bare.size(); ++v) {
-    if (!table.bare[v]) continue;
     const Factor& factor = study.model().factors[table.factors[v].value];
+    const bool is_number = factor.dimension == Dimension::number;
+    if (!table.bare[v] && !is_number) continue;
     const double usual = error_size(study.errors.by_factor[table.factors[v].value]);
     for (std::size_t row = 0; row < table.rows; ++row) {
       const double value = table.values[row * table.factors.size() + v];
       if (std::abs(value) <= kFarBeyond * usual) continue;
-      return line(file, factor.name, factor.dimension,
-                  beyond_text(value, factor.dimension, usual, "the size that the study gives this error"));
+      const std::string found = beyond_text(value, factor.dimension, usual, "the size that the study gives this error");
+      if (is_number) return fmt::format("{}: {}: {}; is that meant?", printable(file), printable(factor.name), found);
+      return line(file, factor.name, factor.dimension, found);
     }
   }
   return {};

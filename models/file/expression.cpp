@@ -1,5 +1,7 @@
 #include "models/file/expression.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -272,6 +274,11 @@ class Parser {
     }
     if (!x.powers.like(kNumber.powers) && !x.powers.like(kAngle.powers)) {
       fail(at, "takes " + std::string(name) + " of " + dimension_text(x), "give it an angle, e.g. 30 deg");
+    }
+    // A whole number of more than a turn is likely in degrees; fractions of a turn are written with pi.
+    if (x.powers.like(kNumber.powers) && std::abs(x.si) > 2.0 * std::numbers::pi && std::round(x.si) == x.si) {
+      fail(at, fmt::format("takes {} of {} rad, which is more than a turn", name, shortest(x.si)),
+           fmt::format("write the unit, e.g. {0}({1} deg), or {0}({1} rad)", name, shortest(x.si)));
     }
     return {.si = name == "sin" ? std::sin(x.si) : name == "cos" ? std::cos(x.si) : std::tan(x.si)};
   }

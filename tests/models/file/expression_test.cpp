@@ -79,6 +79,9 @@ TEST(Expression, Mistakes) {
            {"20 mn", "m.toml:3:14: platform.origin[2] '20 mn' has an unknown unit 'mn'; known: m, cm, "},
            {"2 h", "m.toml:3:13: platform.origin[2] '2 h' has an unknown unit 'h'; known: "},
            {"sin(a)", "m.toml:3:11: platform.origin[2] 'sin(a)' takes sin of a length; give it an angle"},
+           {"a*cos(-30)",
+            "m.toml:3:13: platform.origin[2] 'a*cos(-30)' takes cos of -30 rad, which is more than a turn; write "
+            "the unit, e.g. cos(-30 deg), or cos(-30 rad)"},
            {"sqrt(a)",
             "m.toml:3:11: platform.origin[2] 'sqrt(a)' takes the root of a length; take the root of a square"},
            {"atan(a)", "m.toml:3:11: platform.origin[2] 'atan(a)' takes atan of a length; give it a number, e.g. a/b"},
