@@ -42,19 +42,22 @@ std::vector<std::string> sizes_of_dimensions(const StoredResult& result) {
   return sizes;
 }
 
-/// The sizes of errors for each distribution and unit: "24 normal with standard deviations of 0.002 to 0.02 mm".
+/// The sizes of errors for each distribution and unit: "24 normal with standard deviations of 0.002 to 0.02 mm". In a
+/// study with errors.zones the distributions are not named, because errors of features may be drawn together.
 std::vector<std::string> sizes_of_distributions(const StoredResult& result) {
+  const bool in_zones = !readable_setting(result.study_text, "errors", "zones").empty();
   std::map<std::pair<std::string, std::string>, std::vector<double>> groups;
   for (std::size_t p = 0; p < result.factor_sigma.size(); ++p) {
     const Unit& unit = display(result.factors[p]);
-    groups[{std::string(unit.name), result.factor_distribution[p]}].push_back(result.factor_sigma[p] / unit.si);
+    const std::string distribution = in_zones ? "" : result.factor_distribution[p] + " ";
+    groups[{std::string(unit.name), distribution}].push_back(result.factor_sigma[p] / unit.si);
   }
   std::vector<std::string> sizes;
   for (const auto& [key, sigmas] : groups) {
     const auto [least, most] = std::ranges::minmax(sigmas);
     const std::string range = least == most ? fmt::format("a standard deviation of {:.4g}", most)
                                             : fmt::format("standard deviations of {:.4g} to {:.4g}", least, most);
-    sizes.push_back(fmt::format("{} {} with {} {}", sigmas.size(), key.second, range, key.first));
+    sizes.push_back(fmt::format("{} {}with {} {}", sigmas.size(), key.second, range, key.first));
   }
   return sizes;
 }

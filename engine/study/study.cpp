@@ -10,6 +10,7 @@
 
 #include "engine/model/calibrated.h"
 #include "engine/study/calibration.h"
+#include "engine/study/mechanism_doubts.h"
 #include "engine/study/study_kind.h"
 
 namespace poesy {
@@ -119,17 +120,26 @@ MechanismChoice at_compared_fidelity(MechanismChoice mechanism) {
 
 namespace {
 
+/// Builds the mechanism without the study's points. If the mechanism's file does not allow the geometry, the message
+/// begins with what is doubtful in the study's geometry (geometry_doubts()), because that may be the mistake.
+std::unique_ptr<Model> build_without_points(const MechanismChoice& mechanism) {
+  try {
+    return mechanism.entry->build(mechanism.geometry, mechanism.fidelity);
+  } catch (const std::invalid_argument& reason) {
+    throw InputError(mechanism.place, std::string("impossible geometry: ") + reason.what(),
+                     "correct it, or leave it out to keep the published value");
+  } catch (const InputError& reason) {
+    const std::vector<std::string> doubts = geometry_doubts(mechanism);
+    if (doubts.empty()) throw;
+    throw InputError(mechanism.place, doubts.front(),
+                     std::string("with it the mechanism is refused: ") + reason.what());
+  }
+}
+
 /// Builds the mechanism like build_model(), but ignores MechanismChoice::calibrated.
 std::unique_ptr<Model> build_uncorrected(const MechanismChoice& mechanism) {
   const CatalogEntry& entry = *mechanism.entry;
-  if (mechanism.points.empty()) {
-    try {
-      return entry.build(mechanism.geometry, mechanism.fidelity);
-    } catch (const std::invalid_argument& reason) {
-      throw InputError(mechanism.place, std::string("impossible geometry: ") + reason.what(),
-                       "correct it, or leave it out to keep the published value");
-    }
-  }
+  if (mechanism.points.empty()) return build_without_points(mechanism);
   try {
     return entry.build_with_points(mechanism.geometry, mechanism.fidelity, mechanism.points);
   } catch (const std::invalid_argument& reason) {

@@ -242,6 +242,10 @@ class Parser {
     for (const GeometryParameter& parameter : parameters_) known.push_back(parameter.name);
     known.insert(known.end(), kFunctions.begin(), kFunctions.end());
     known.push_back("pi");
+    const std::string_view in_degrees = name.ends_with('d') ? name.substr(0, name.size() - 1) : std::string_view();
+    if (in_degrees == "sin" || in_degrees == "cos" || in_degrees == "tan") {
+      fail(at, fmt::format("has an unknown function '{}'", name), fmt::format("write {}(45 deg)", in_degrees));
+    }
     fail(at, "has an unknown parameter '" + printable(name) + "'",
          parameters_.empty() ? "values in [geometry] are numbers; write the expression where it is used"
                              : suggestion(name, known));

@@ -1,6 +1,7 @@
 #include "engine/kinds/monte_carlo/drivers.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -68,6 +69,16 @@ bool has_any_share(const StoredResult& result, const YieldResult& yield, const M
                    std::size_t p) {
   const std::vector<std::size_t> responses = shared_responses(result, yield);
   return responses.empty() || std::ranges::any_of(responses, [&](std::size_t r) { return !(shares(r, p) <= 0.0); });
+}
+
+/// The largest share of error p in the scatter of these responses; NaN if no share is known.
+double largest_share(const YieldResult& yield, std::span<const std::size_t> responses, std::size_t p) {
+  double largest = kNaN;
+  for (const std::size_t r : responses) {
+    const double share = yield.mean_square_share(r, p);
+    if (!(share <= largest) && !std::isnan(share)) largest = share;
+  }
+  return largest;
 }
 
 /// The errors whose effect on the yield was tested, and those whose effect is distinguished from zero ("told").
@@ -233,13 +244,18 @@ Table change_table(const StoredResult& result, const YieldResult& yield) {
                                     {number_column("slope", "slope", "", 1), [&](std::size_t p) {
                                        return number_cell(yield.gradient(p) * display(result.factors[p]).si);
                                      }}};
-  const std::optional<ResponseShares> shares = response_shares(result);
-  if (shares) {
-    columns.push_back(
-        {percent_column("share", "share of scatter"), [&](std::size_t p) { return percent_cell(shares->each[p]); }});
+  const std::vector<std::size_t> shared = shared_responses(result, yield);
+  if (!shared.empty()) {
+    columns.push_back({percent_column("share", "share of scatter"),
+                       [&, shared](std::size_t p) { return percent_cell(largest_share(yield, shared, p)); }});
   }
-  if (found.tested > 1 && !found.told.empty()) table.notes.push_back(selection_note(shares.has_value()));
-  if (shares) table.notes.push_back("share of scatter: of the scatter of " + result.responses[shares->response].name);
+  if (found.tested > 1 && !found.told.empty()) table.notes.push_back(selection_note(!shared.empty()));
+  if (!shared.empty()) {
+    std::vector<std::string> names;
+    for (const std::size_t r : shared) names.push_back(result.responses[r].name);
+    table.notes.push_back(fmt::format("share of scatter: of the scatter of {}{}", fmt::join(names, " or "),
+                                      names.size() > 1 ? ", the largest of these" : ""));
+  }
   fill(table, found.told, columns);
   const std::size_t unknown = changes.value.size() - found.known;
   add_line(table, found.known - found.told.size(), "whose effect is not certain", "whose effects are not certain");

@@ -299,6 +299,12 @@ void claim_tolerance_files(OutputFolder& folder, const StoredResult& result, con
   for (const std::string& file : files_beside(monte_carlo_study(result, catalog))) folder.claim(file);
 }
 
+/// A comment in the studies that test tolerances.
+static constexpr std::string_view kChance =
+    "the tolerances are exactly at the limit, as far as the indices say, so chance decides between PASS and FAIL: a "
+    "root "
+    "mean square within some per cent of the limit confirms them";
+
 Confirmation write_confirmation(const std::string& folder, const StoredResult& result,
                                 const ResponseTolerances& tolerances, const Catalog& catalog) {
   POESY_EXPECTS(tolerances.limit.has_value());
@@ -312,12 +318,13 @@ Confirmation write_confirmation(const std::string& folder, const StoredResult& r
                                 ? shortest(tolerances.limit->limit)
                                 : readable_text({tolerances.limit->limit, display(response).dimension});
   const std::vector<double> largest = quarters_of_parts(study);
+  const std::string comment = (tolerances.caveat.empty() ? "" : tolerances.caveat + "\n# ") + std::string(kChance);
   Confirmation written;
   const auto add = [&](const std::string& name, const std::string& words, std::span<const double> values) {
     study.title = "Tests " + words + " against a limit of " + limit + " on the root mean square of " + response.name;
     study.errors = as_studied;
     set_tolerances(study, largest, values, written.at_largest);
-    written.paths.push_back(write_confirming_study(folder, name, study, tolerances.caveat));
+    written.paths.push_back(write_confirming_study(folder, name, study, comment));
   };
   add(kEqualEffect, "tolerances of equal effect", tolerances.limit->equal_effect);
   add(kEqualTolerance, "equal tolerances", tolerances.limit->equal_tolerance);

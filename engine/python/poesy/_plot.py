@@ -354,7 +354,8 @@ def _allocation_field(result: Result, response: str | None) -> _Field:
 def _selected(result: Result, data: Any, axis: str, name: str) -> Any:
     known = [str(one) for one in data[axis].values]
     if name not in known:
-        raise NotInResult(f"{result.path}: there is no {axis} '{name}'; it has {', '.join(known)}")
+        again = "; for another response, sweep again with --response" if result.kind == "sweep" else ""
+        raise NotInResult(f"{result.path}: there is no {axis} '{name}'; it has {', '.join(known)}{again}")
     return data.sel({axis: name})
 
 
