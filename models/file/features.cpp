@@ -171,30 +171,41 @@ class FeatureBuilder {
     return {joint + 1, is_last ? mechanism_.bodies[limb.to].home : limb.joints[joint].at_home, !is_last};
   }
 
-  /// The other end, at home, of the part on this side of a joint: the point of the neighbouring joint, or the origin of
-  /// the body after the last joint. None for a part of the base, and if one of the two joints slides, because the
-  /// point of a sliding joint does not show where its part ends.
-  std::optional<Vector3> other_end(PartSide side, const Limb& limb, std::size_t joint) const {
-    const auto slides = [&](std::size_t j) {
-      const JointKind kind = limb.joints[j].kind;
-      return kind == JointKind::prismatic || kind == JointKind::helical || kind == JointKind::cylindrical;
-    };
-    const bool is_after = side == PartSide::after;
-    if (slides(joint) || (!is_after && joint == 0)) return {};
-    if (is_after && joint + 1 == limb.joints.size()) return mechanism_.bodies[limb.to].home.p;
-    const std::size_t other = is_after ? joint + 1 : joint - 1;
-    return slides(other) ? std::nullopt : std::optional(limb.joints[other].at_home.p);
+  static bool slides(const Joint& joint) {
+    return joint.kind == JointKind::prismatic || joint.kind == JointKind::helical ||
+           joint.kind == JointKind::cylindrical;
   }
 
-  /// Returns true if the direction of a distance leads from its joint into the part, to the part's other end. Then an
-  /// error along this direction makes the part shorter.
-  bool leads_into_part(const FeatureLines& lines, const FeatureFrame& at, const Limb& limb, std::size_t joint) const {
-    // Smallest cosine of the angle between the direction and the line to the other end.
-    constexpr double kMostlyAlong = 0.5;
-    const auto end = lines.direction ? other_end(lines.part, limb, joint) : std::nullopt;
-    if (!end) return false;
+  /// The other end, at home, of the part on this side of a joint: the point of the next joint that does not slide,
+  /// because the point of a sliding joint does not show where a part ends, or the origin of the body at the end of the
+  /// limb. None for a part of the base or of the body where the limb begins.
+  std::optional<Vector3> other_end(PartSide side, const Limb& limb, std::size_t joint) const {
+    if (side == PartSide::after) {
+      for (std::size_t j = joint + 1; j < limb.joints.size(); ++j) {
+        if (!slides(limb.joints[j])) return limb.joints[j].at_home.p;
+      }
+      return mechanism_.bodies[limb.to].home.p;
+    }
+    for (std::size_t j = joint; j-- > 0;) {
+      if (!slides(limb.joints[j])) return limb.joints[j].at_home.p;
+    }
+    return {};
+  }
+
+  /// What an error along the direction of a distance does to the part: longer if the direction leads to the joint from
+  /// the other end of the part, shorter if it leads from the joint to that end; else only the direction is known, as
+  /// for the distance of a joint that slides.
+  std::string distance_text(const FeatureLines& lines, const FeatureFrame& at, const Limb& limb,
+                            std::size_t joint) const {
+    constexpr double kMostlyAlong = 0.5;  // smallest cosine of the angle between the direction and the line to the end
+    const std::string off = "is off along its direction";
+    if (slides(limb.joints[joint])) return off;
+    const auto end = other_end(lines.part, limb, joint);
+    if (!end) return "is too long";
     const Vector3 across = *end - at.middle;
-    return at.axes.col(0).dot(across) > kMostlyAlong * across.norm();
+    const double along = at.axes.col(0).dot(across);
+    if (along > kMostlyAlong * across.norm()) return off + ", which makes its part shorter";
+    return along < -kMostlyAlong * across.norm() ? "is too long" : off;
   }
 
   Vector3 middle_of(const FeatureLines& lines, const Limb& first, std::size_t joint) const {
@@ -316,10 +327,9 @@ class FeatureBuilder {
     feature.name = lines.name + "_" + number;
     feature.limb = first + copy + 1;
     feature.frame = part.frame;
-    const bool is_shorter = leads_into_part(lines, at, limb, joint);
     for (const FeatureError& error : errors_of(lines, feature)) {
-      const std::string text = is_shorter ? "is off along its direction, which makes its part shorter"
-                                          : error.text + axis_text(error, at.axes);
+      const std::string text =
+          lines.direction ? distance_text(lines, at, limb, joint) : error.text + axis_text(error, at.axes);
       (error.is_tilt ? feature.tilt : feature.middle).emplace_back(mechanism_.factors.size());
       Factor factor{feature_error_name(lines.name, name(error.direction), feature.limb), Dimension::length,
                     feature.limb, part.frame, fmt::format("{} of limb {} {}", lines.name, limb.label, text)};

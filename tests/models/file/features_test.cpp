@@ -95,6 +95,29 @@ TEST(Features, SayWhetherADistanceMakesItsPartLonger) {
   EXPECT_NE(rod(on_platform, R"([1, 0, 0])").find(longer), std::string::npos);
 }
 
+TEST(Features, SayWhatADistanceOfALegWithASlideDoes) {
+  const auto leg = [](const std::string& place, const std::string& direction) {
+    const std::string text =
+        replaced(text_of("ups6"), {R"("S", type = "S", at = ["92.1597 mm", "84.4488 mm", "h"] } ])",
+                                   R"("S", type = "S", at = ["92.1597 mm", "84.4488 mm", "h"] } ]
+features = [ { name = "rod", kind = "distance", tolerance = "0.02 mm", )" +
+                                       place + ", direction = " + direction + " } ]"});
+    const MechanismFile file = read_mechanism_file(text, "m.toml");
+    const Mechanism made = mechanism(file, default_geometry(file));
+    const std::string& description = made.factors[position(made.factors, "rod_1")].description;
+    return description.substr(description.find(" is ") + 1);
+  };
+  const std::string to_platform = "[-213, -27, 800]";
+  const std::string to_base = "[213, 27, -800]";
+  const std::string off = "is off along its direction";
+  EXPECT_EQ(leg(R"(joint = "S")", to_platform), "is too long");
+  EXPECT_EQ(leg(R"(joint = "S")", to_base), off + ", which makes its part shorter");
+  EXPECT_EQ(leg(R"(joint = "B", axis = 2, part = "after")", to_platform), off + ", which makes its part shorter");
+  EXPECT_EQ(leg(R"(joint = "B", axis = 2, part = "after")", to_base), "is too long");
+  EXPECT_EQ(leg(R"(joint = "S")", "[1, 0, 0]"), off);  // across the leg
+  EXPECT_EQ(leg(R"(joint = "L")", to_platform), off);  // of the slide itself
+}
+
 TEST(Features, HaveTolerancesByExpressions) {
   const auto tolerance = [](const std::string& written) {
     const std::string text = replaced(text_of(kName), {"geometry = { ", "geometry = { t1 = \"0.01 mm\", "});
