@@ -348,6 +348,7 @@ std::vector<std::string> all_doubts(const Study& study, const Model& model, cons
   std::ranges::copy(size_doubts(study, model), std::back_inserter(list));
   std::ranges::copy(doubts_of(study, poses), std::back_inserter(list));
   if (std::string doubt = zones_doubt(study); !doubt.empty()) list.push_back(std::move(doubt));
+  if (std::string doubt = sides_doubt(model, poses.poses); !doubt.empty()) list.push_back(std::move(doubt));
   if (std::string doubt = correction_doubt(study, model); !doubt.empty()) list.push_back(std::move(doubt));
   return list;
 }

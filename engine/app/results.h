@@ -100,9 +100,9 @@ FileError too_little_memory(const std::string& path, const std::string& work, co
 void warn_of_mechanism(const Study& study, const Model& model);
 
 /// What looks like a mistake, one line each: in the mechanism, in the sizes of drawn errors (size_doubts()), in zones
-/// that are not used (zones_doubt()), in the numbers of the tables that the study names and the ranges of coordinates
-/// in which it seeks poses (doubts_of()), and in limits on points for which the correction of the actuators is not best
-/// (correction_doubt()).
+/// that are not used (zones_doubt()), in poses with a singular pose between them (sides_doubt()), in the numbers of the
+/// tables that the study names and the ranges of coordinates in which it seeks poses (doubts_of()), and in limits on
+/// points for which the correction of the actuators is not best (correction_doubt()).
 std::vector<std::string> all_doubts(const Study& study, const Model& model, const SelectedPoses& poses);
 
 /// Notes on the study, one line each: how its machines are calibrated, which errors are constant, and the note of the

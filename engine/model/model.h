@@ -283,6 +283,11 @@ class Model {
   /// Precondition: the pose is reachable.
   virtual double condition(std::span<const double> pose) const = 0;
 
+  /// On which side of the singular poses a pose is: 1 or -1, the sign of the determinant of the equations of passive
+  /// joints and bodies. A mechanism cannot move between poses with different signs without passing a singular pose. 0
+  /// if it is not known, as for over-constrained mechanisms. Precondition: the pose is reachable.
+  virtual int singular_side(std::span<const double> /*pose*/) const { return 0; }
+
   /// An evaluator for one thread. The model must outlive it.
   virtual std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const = 0;
 

@@ -1,5 +1,6 @@
 #include "models/assembly/model.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -150,6 +151,14 @@ double condition(const AssemblyModel& model, std::span<const double> pose) {
   const double smallest = values[joints.cols() - 1 - index(model.idle)];
   const double rounding = static_cast<double>(values.size()) * std::numeric_limits<double>::epsilon();
   return smallest > rounding * values[0] ? values[0] / smallest : std::numeric_limits<double>::infinity();
+}
+
+int singular_side(const AssemblyModel& model, std::span<const double> pose) {
+  const Nominal at = model.at(pose);
+  const Matrix B = motion_columns(model.assembly, at.limbs, Matrix6::Identity());
+  if (B.rows() != B.cols()) return 0;
+  const double determinant = B.determinant();
+  return determinant > 0.0 ? 1 : determinant < 0.0 ? -1 : 0;
 }
 
 double effect_rounding(const AssemblyModel& model, const Response& response) {

@@ -57,6 +57,9 @@ SolveTrace assembly_trace(const AssemblyModel& model, std::span<const double> po
 /// these columns is rank-deficient to rounding.
 double condition(const AssemblyModel& model, std::span<const double> pose);
 
+/// The sign of the determinant of B (motion_columns()) at a pose; 0 if B is not square or singular.
+int singular_side(const AssemblyModel& model, std::span<const double> pose);
+
 /// The largest component of the force in any limb per unit displacement of the end of any limb, at this pose (N/m).
 double largest_stiffness(const AssemblyModel& model, const Nominal& pose);
 

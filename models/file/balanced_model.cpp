@@ -87,6 +87,7 @@ class BalancedModel final : public TrackedModel {
   }
 
   double condition(std::span<const double> pose) const override { return assembly::condition(model_, pose); }
+  int singular_side(std::span<const double> pose) const override { return assembly::singular_side(model_, pose); }
 
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
     return assembly::assembly_evaluator(model_, options, fidelity_);
