@@ -20,7 +20,9 @@ class ForwardingModel : public Model {
     return model_->joint_displacements(pose);
   }
   double condition(std::span<const double> pose) const override { return model_->condition(pose); }
-  int singular_side(std::span<const double> pose) const override { return model_->singular_side(pose); }
+  bool are_separated(std::span<const double> one, std::span<const double> other) const override {
+    return model_->are_separated(one, other);
+  }
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
     return formed(model_->evaluator(options));
   }

@@ -283,10 +283,10 @@ class Model {
   /// Precondition: the pose is reachable.
   virtual double condition(std::span<const double> pose) const = 0;
 
-  /// On which side of the singular poses a pose is: 1 or -1, the sign of the determinant of the equations of passive
-  /// joints and bodies. A mechanism cannot move between poses with different signs without passing a singular pose. 0
-  /// if it is not known, as for over-constrained mechanisms. Precondition: the pose is reachable.
-  virtual int singular_side(std::span<const double> /*pose*/) const { return 0; }
+  /// Returns true if the mechanism cannot move between two poses without passing a singular pose: the equations of
+  /// passive joints and bodies have determinants of different signs. False if this is not known. Preconditions: the
+  /// poses are reachable.
+  virtual bool are_separated(std::span<const double> /*one*/, std::span<const double> /*other*/) const { return false; }
 
   /// An evaluator for one thread. The model must outlive it.
   virtual std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const = 0;

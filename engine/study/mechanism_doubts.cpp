@@ -168,19 +168,12 @@ std::vector<std::string> size_doubts(const Study& study, const Model& model) {
 std::string sides_doubt(const Model& model, const PoseSet& poses) {
   constexpr std::size_t kMost = 300;  // poses that are tried, because each may take a millisecond
   const std::size_t step = (poses.size() + kMost - 1) / kMost;
-  int first = 0;
-  std::size_t at = 0;
-  for (std::size_t m = 0; m < poses.size(); m += step) {
-    const int side = model.singular_side(poses[PoseIndex(m)]);
-    if (first == 0) {
-      first = side;
-      at = m;
-    }
-    if (side == 0 || side == first) continue;
+  for (std::size_t m = step; m < poses.size(); m += step) {
+    if (!model.are_separated(poses[PoseIndex(0)], poses[PoseIndex(m)])) continue;
     return asked_back(fmt::format(
-        "poses {} and {} are on different sides of singular poses, so that a machine cannot move from one to the other "
+        "poses 0 and {} are on different sides of singular poses, so that a machine cannot move from one to the other "
         "without passing a singular pose",
-        at, m));
+        m));
   }
   return {};
 }

@@ -33,7 +33,7 @@ std::vector<std::string> workspace_doubts(const Study& study, const PoseSet& pos
 std::vector<std::string> size_doubts(const Study& study, const Model& model);
 
 /// A question if poses of a study, of which some hundred are tried, are on different sides of singular poses
-/// (Model::singular_side()); empty if not.
+/// (Model::are_separated()); empty if not.
 std::string sides_doubt(const Model& model, const PoseSet& poses);
 
 /// A question if features of the drawing vary with the size of all lengths although they have zones

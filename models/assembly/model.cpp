@@ -153,12 +153,33 @@ double condition(const AssemblyModel& model, std::span<const double> pose) {
   return smallest > rounding * values[0] ? values[0] / smallest : std::numeric_limits<double>::infinity();
 }
 
-int singular_side(const AssemblyModel& model, std::span<const double> pose) {
-  const Nominal at = model.at(pose);
-  const Matrix B = motion_columns(model.assembly, at.limbs, Matrix6::Identity());
-  if (B.rows() != B.cols()) return 0;
-  const double determinant = B.determinant();
-  return determinant > 0.0 ? 1 : determinant < 0.0 ? -1 : 0;
+/// Returns true if two subspaces of the same dimension are near each other. bases: orthonormal.
+static bool are_near(const Matrix& one, const Matrix& other) {
+  constexpr double kLeast = 0.5;  // product of the cosines of the angles between them
+  return one.cols() == other.cols() && std::abs((one.transpose() * other).determinant()) > kLeast;
+}
+
+bool are_separated(const AssemblyModel& model, std::span<const double> one, std::span<const double> other) {
+  const auto columns_at = [&](std::span<const double> pose) {
+    return motion_columns(model.assembly, model.at(pose).limbs, Matrix6::Identity());
+  };
+  const Matrix at_one = columns_at(one);
+  const Matrix at_other = columns_at(other);
+  const auto complement = [](const Matrix& columns) {
+    constexpr double kIndependent = 1e-9;  // a smaller pivot, relative to the largest, counts as 0
+    return linalg::orthogonal_complement(columns, kIndependent);
+  };
+  const Matrix left = complement(at_one);
+  const Matrix idle = complement(at_one.transpose());
+  const bool is_known = at_one.cols() + left.cols() == at_one.rows() + idle.cols() &&
+                        are_near(left, complement(at_other)) && are_near(idle, complement(at_other.transpose()));
+  if (!is_known) return false;
+  const auto determinant = [&](const Matrix& columns) {
+    Matrix bordered = Matrix::Zero(columns.rows() + idle.cols(), columns.cols() + left.cols());
+    bordered << columns, left, idle.transpose(), Matrix::Zero(idle.cols(), left.cols());
+    return bordered.determinant();
+  };
+  return determinant(at_one) * determinant(at_other) < 0.0;
 }
 
 double effect_rounding(const AssemblyModel& model, const Response& response) {

@@ -57,8 +57,10 @@ SolveTrace assembly_trace(const AssemblyModel& model, std::span<const double> po
 /// these columns is rank-deficient to rounding.
 double condition(const AssemblyModel& model, std::span<const double> pose);
 
-/// The sign of the determinant of B (motion_columns()) at a pose; 0 if B is not square or singular.
-int singular_side(const AssemblyModel& model, std::span<const double> pose);
+/// Returns true if B (motion_columns()) loses rank between two poses. B is bordered by its null spaces at the first
+/// pose (over-constraints and idle freedoms), and the signs of the determinants of the bordered matrices are compared.
+/// False if the null spaces at both poses differ much, because the signs then say nothing.
+bool are_separated(const AssemblyModel& model, std::span<const double> one, std::span<const double> other);
 
 /// The largest component of the force in any limb per unit displacement of the end of any limb, at this pose (N/m).
 double largest_stiffness(const AssemblyModel& model, const Nominal& pose);

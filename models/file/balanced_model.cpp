@@ -87,7 +87,9 @@ class BalancedModel final : public TrackedModel {
   }
 
   double condition(std::span<const double> pose) const override { return assembly::condition(model_, pose); }
-  int singular_side(std::span<const double> pose) const override { return assembly::singular_side(model_, pose); }
+  bool are_separated(std::span<const double> one, std::span<const double> other) const override {
+    return assembly::are_separated(model_, one, other);
+  }
 
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {
     return assembly::assembly_evaluator(model_, options, fidelity_);
