@@ -194,14 +194,13 @@ class FeatureBuilder {
 
   /// What an error along the direction of a distance does to the part: longer if the direction leads to the joint from
   /// the other end of the part, shorter if it leads from the joint to that end; else only the direction is known, as
-  /// for the distance of a joint that slides.
+  /// for a part of the base and for the distance of a joint that slides.
   std::string distance_text(const FeatureLines& lines, const FeatureFrame& at, const Limb& limb,
                             std::size_t joint) const {
     constexpr double kMostlyAlong = 0.5;  // smallest cosine of the angle between the direction and the line to the end
     const std::string off = "is off along its direction";
-    if (slides(limb.joints[joint])) return off;
-    const auto end = other_end(lines.part, limb, joint);
-    if (!end) return "is too long";
+    const auto end = slides(limb.joints[joint]) ? std::nullopt : other_end(lines.part, limb, joint);
+    if (!end) return off;
     const Vector3 across = *end - at.middle;
     const double along = at.axes.col(0).dot(across);
     if (along > kMostlyAlong * across.norm()) return off + ", which makes its part shorter";
