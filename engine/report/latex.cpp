@@ -136,7 +136,7 @@ std::string preamble(const Table& table, const std::vector<ColumnLayout>& layout
 std::string comments(bool is_long, bool has_paragraphs, const std::vector<std::string>& missing, double millimetres) {
   std::string text = fmt::format("% needs \\usepackage{{{}booktabs{}}}\n", has_paragraphs ? "array," : "",
                                  is_long ? ",longtable" : "");
-  if (is_long) text += "% in two columns: \\onecolumn before it, or --top N for a table with fewer rows\n";
+  if (is_long) text += "% not for pages of two columns; --top N gives a table with fewer rows\n";
   if (missing.empty()) return text;
   return text + fmt::format("% {:g} mm have no room for: {}\n", millimetres,
                             latex_text(fmt::format("{}", fmt::join(missing, ", "))));

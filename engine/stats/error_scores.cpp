@@ -54,7 +54,7 @@ double NormalScore::growth_square() const {
   const double s = kErrorGrowth / std::sqrt(2.0 - kErrorGrowth * kErrorGrowth);
   const double ratio = half_width / sigma / std::numbers::sqrt2;
   const double inside = std::isinf(ratio) ? 1.0 : std::erf(ratio / s) / std::erf(ratio);
-  return growth_factor() * growth_factor() * s * inside - 1.0;
+  return std::max(0.0, growth_factor() * growth_factor() * s * inside - 1.0);
 }
 
 PolynomialScore::PolynomialScore(std::span<const double> points, std::span<const double> weights, std::size_t degree) {

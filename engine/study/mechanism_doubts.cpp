@@ -166,7 +166,7 @@ std::vector<std::string> size_doubts(const Study& study, const Model& model) {
 }
 
 std::string sides_doubt(const Model& model, const PoseSet& poses) {
-  constexpr std::size_t kMost = 300;  // poses that are tried, because each may take a millisecond
+  constexpr std::size_t kMost = 40;  // poses that are tried, because one may take some milliseconds
   const std::size_t step = (poses.size() + kMost - 1) / kMost;
   for (std::size_t m = step; m < poses.size(); m += step) {
     if (!model.are_separated(poses[PoseIndex(0)], poses[PoseIndex(m)])) continue;

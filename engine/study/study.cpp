@@ -131,8 +131,8 @@ std::unique_ptr<Model> build_without_points(const MechanismChoice& mechanism) {
   } catch (const InputError& reason) {
     const std::vector<std::string> doubts = geometry_doubts(mechanism);
     if (doubts.empty()) throw;
-    throw InputError(mechanism.place, doubts.front(),
-                     std::string("with it the mechanism is refused: ") + reason.what());
+    throw InputError(mechanism.place, fmt::format("{}", fmt::join(doubts, " ")),
+                     std::string("the mechanism is refused with it: ") + reason.what());
   }
 }
 

@@ -88,7 +88,10 @@ class BalancedModel final : public TrackedModel {
 
   double condition(std::span<const double> pose) const override { return assembly::condition(model_, pose); }
   bool are_separated(std::span<const double> one, std::span<const double> other) const override {
-    return assembly::are_separated(model_, one, other);
+    // A spherical joint is three revolute ones, whose determinant also changes its sign where two of their axes align.
+    const auto is_spherical = [](const Joint& joint) { return joint.kind == JointKind::spherical; };
+    const auto has_one = [&](const Limb& limb) { return std::ranges::any_of(limb.joints, is_spherical); };
+    return std::ranges::none_of(mechanism().limbs, has_one) && assembly::are_separated(model_, one, other);
   }
 
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {

@@ -35,6 +35,13 @@ bool is_unit_of_geometry(std::string_view name) {
   return unit != nullptr && (unit->dimension == Dimension::length || unit->dimension == Dimension::angle);
 }
 
+/// Returns true if the argument of a trigonometric function is a number as written, and not a small fraction, so that
+/// it may be in degrees. Computed numbers, such as an arc over a radius, are radians.
+bool is_angle_without_unit(std::string_view written, double value) {
+  const bool is_fraction = std::round(value) != value && std::abs(value) <= 2.0 * std::numbers::pi;
+  return value != 0.0 && !is_fraction && parse_number(written).has_value();
+}
+
 /// A recursive descent parser. Each function reads the construct that it is named after, from character number `at_` of
 /// the text on.
 class Parser {
@@ -244,7 +251,8 @@ class Parser {
     known.push_back("pi");
     const std::string_view in_degrees = name.ends_with('d') ? name.substr(0, name.size() - 1) : std::string_view();
     if (in_degrees == "sin" || in_degrees == "cos" || in_degrees == "tan") {
-      fail(at, fmt::format("has an unknown function '{}'", name), fmt::format("write {}(45 deg)", in_degrees));
+      fail(at, fmt::format("has an unknown function '{}'", name),
+           fmt::format("write {} of a number with the unit deg", in_degrees));
     }
     fail(at, "has an unknown parameter '" + printable(name) + "'",
          parameters_.empty() ? "values in [geometry] are numbers; write the expression where it is used"
@@ -253,7 +261,9 @@ class Parser {
 
   Value function(std::string_view name, std::size_t at) {
     need('(');
+    const std::size_t begin = at_;
     const Value x = sum();
+    const std::string_view written = trimmed(text_.substr(begin, at_ - begin));
     if (name == "atan2") {
       need(',');
       const Value y = sum();
@@ -279,10 +289,9 @@ class Parser {
     if (!x.powers.like(kNumber.powers) && !x.powers.like(kAngle.powers)) {
       fail(at, "takes " + std::string(name) + " of " + dimension_text(x), "give it an angle, e.g. 30 deg");
     }
-    // A whole number of more than a turn is likely in degrees; fractions of a turn are written with pi.
-    if (x.powers.like(kNumber.powers) && std::abs(x.si) > 2.0 * std::numbers::pi && std::round(x.si) == x.si) {
-      fail(at, fmt::format("takes {} of {} rad, which is more than a turn", name, shortest(x.si)),
-           fmt::format("write the unit, e.g. {0}({1} deg), or {0}({1} rad)", name, shortest(x.si)));
+    if (is_angle_without_unit(written, x.si)) {
+      fail(at, fmt::format("takes {} of {} without a unit", name, written),
+           fmt::format("write {0}({1} deg), or {0}({1} rad)", name, written));
     }
     return {.si = name == "sin" ? std::sin(x.si) : name == "cos" ? std::cos(x.si) : std::tan(x.si)};
   }

@@ -202,6 +202,7 @@ class FeatureBuilder {
     const auto end = slides(limb.joints[joint]) ? std::nullopt : other_end(lines.part, limb, joint);
     if (!end) return off;
     const Vector3 across = *end - at.middle;
+    if (across.norm() <= kRounding) return off;
     const double along = at.axes.col(0).dot(across);
     if (along > kMostlyAlong * across.norm()) return off + ", which makes its part shorter";
     return along < -kMostlyAlong * across.norm() ? "is too long" : off;

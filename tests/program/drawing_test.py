@@ -462,7 +462,7 @@ bounds = ["0.002 mm", "0.2 mm"]
 
     def test_zones_that_are_not_used(self):
         """A study of a drawing without `errors.zones` is asked about, also where its result is shown."""
-        asked = "errors.zones is missing, so zones of the drawing, such as that of rail_1, are not used, and"
+        asked = "errors.zones is missing, so zones of the drawing, such as that of face_1, are not used, and"
         analysis = 'kind = "monte-carlo"\nsamples = 20\nlimits = { tip_position = "1 mm" }'
         sizes = 'errors.linear = { distribution = "normal", sigma = "0.005 mm" }'
         override = '\nerrors.override."*" = { distribution = "normal", sigma = "0.006 mm" }'
@@ -472,9 +472,11 @@ bounds = ["0.002 mm", "0.2 mm"]
             self.write("study.toml", STUDY.format(analysis=analysis, fidelity="first-order", zones=zones))
             done = self.poesy("run", "study.toml", "-o", "r.h5", "--quiet")
             self.assertEqual(done.returncode, 0, done.stderr.decode())
+            self.assertEqual(asked in done.stderr.decode(), is_asked, (zones, done.stderr.decode()))
+            if override in zones:
+                continue  # the study in the result states the sizes of all errors at once
             self.succeeds("report", "r.h5", "-o", "r.html")
-            for text in (done.stderr.decode(), " ".join(self.succeeds("show", "r.h5").split()),
-                         (self.folder / "r.html").read_text()):
+            for text in (" ".join(self.succeeds("show", "r.h5").split()), (self.folder / "r.html").read_text()):
                 self.assertEqual(asked in text, is_asked, (zones, text[:2000]))
 
     def test_named(self):

@@ -140,12 +140,12 @@ class StudyNotes(ProgramTest):
             self.assertEqual("errors.machines has delta_1_1_x = " in said and "are these sizes?" in said, asked, said)
 
     def test_poses_with_a_singular_pose_between_them(self):
-        """A planar 3-RPR (over-constrained) is singular at 60 deg, a Tricept nowhere in its workspace."""
+        """A planar 3-RPR (over-constrained) is singular at -60 deg, a Tricept nowhere in its workspace."""
         self.write("rpr3.toml", (GALLERY.parents[1] / "tests/data/mechanisms/rpr3.toml").read_text()
-                   .replace('phi = ["-50 deg", "50 deg"]', 'phi = ["-50 deg", "100 deg"]'))
+                   .replace('phi = ["-50 deg", "50 deg"]', 'phi = ["-100 deg", "50 deg"]'))
         study = RPS.replace("rps.toml", "rpr3.toml").replace("count = 1", 'select = "file", file = "poses.csv"')
         self.write("study.toml", study.replace("delta_1_1_x", "leg_1"))
-        for last, asked in ((50, False), (75, True)):
+        for last, asked in ((50, False), (-50, False), (-70, True)):
             self.write("poses.csv", f"x [mm],y [mm],phi [deg]\n1,2,0\n1,2,20\n1,2,{last}\n")
             said = self.errors_of("check", "study.toml")
             self.assertEqual("poses 0 and 2 are on different sides of singular poses" in said, asked, said)

@@ -344,7 +344,8 @@ WRONG_STUDIES = [
     ('zones = { distribution = "normal", sigmas = 3 }', 'zones = { distribution = "normal", sigmas = 1e308 }',
      'errors.zones.sigmas is 1e+308; it must lie between 0 and'),
     ('samples = 3\n', 'fidelity = "exact"\n', "unknown key 'fidelity' in [analysis]; it is a key of [mechanism]"),
-    ('samples = 3\n', 'run.threads = 2\n', "unknown key 'run' in [analysis]"),
+    ('format = "poesy-study"\n', 'run.threads = 2\nformat = "poesy-study"\n',
+     "unknown key 'threads' in [run]; give it on the command line: --threads N"),
 ]
 
 WRONG_PARTS = [

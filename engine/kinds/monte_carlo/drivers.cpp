@@ -253,8 +253,8 @@ Table change_table(const StoredResult& result, const YieldResult& yield) {
   if (!shared.empty()) {
     std::vector<std::string> names;
     for (const std::size_t r : shared) names.push_back(result.responses[r].name);
-    table.notes.push_back(fmt::format("share of scatter: of the scatter of {}{}", fmt::join(names, " or "),
-                                      names.size() > 1 ? ", the largest of these" : ""));
+    table.notes.push_back(fmt::format("share of scatter: {}of the scatter of {}",
+                                      names.size() > 1 ? "the largest of the shares " : "", fmt::join(names, ", ")));
   }
   fill(table, found.told, columns);
   const std::size_t unknown = changes.value.size() - found.known;

@@ -275,6 +275,9 @@ void append_yield_tables(CsvTables& tables, const StoredResult& result, const Yi
                     {list_column("gradient", found.gradient), list_column("gradient_ci_low", found.gradient_ci_low),
                      list_column("gradient_ci_high", found.gradient_ci_high)},
                     {"unit", [&](std::size_t p) { return "per " + result.factors[p].unit; }}};
+  if (!found.change_sd_without_effect.empty()) {
+    gradient.columns.push_back(list_column("change_sd_without_effect", found.change_sd_without_effect));
+  }
   if (found.has_change()) {
     for (const auto& [name, list] : {std::pair{"change", &found.change},
                                      {"change_ci_low", &found.change_ci_low},

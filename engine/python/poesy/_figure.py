@@ -82,6 +82,8 @@ def figure(
     from matplotlib.figure import Figure
 
     width = _width(size)
+    if top < 1:
+        raise StudyError(f"a figure of {top} bars shows nothing; give top = 1 or more")
     if path is not None and Path(path).suffix not in _ENDS:
         raise StudyError(f"{os.fspath(path)}: a figure ends in {', '.join(_ENDS)}")
     draw, height = _drawing(result, response, top)

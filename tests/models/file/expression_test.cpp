@@ -61,6 +61,12 @@ TEST(Expression, OtherDimensions) {
   EXPECT_EQ(dimension_text(of("tilt / a")), "length^-1 angle");
 }
 
+TEST(Expression, TakesComputedNumbersAsRadians) {
+  EXPECT_DOUBLE_EQ(of("cos(a/(3 mm))").si, std::cos(of("a").si / 3e-3));
+  EXPECT_NEAR(of("cos(6*pi)").si, 1.0, 1e-12);
+  EXPECT_DOUBLE_EQ(of("cos(0.5)").si, std::cos(0.5));
+}
+
 TEST(Expression, BareZeroIsAnyQuantity) {
   for (const char* text : {"0", "0.0", "-0", "0 * 3", "(0)", "sqrt(0)"}) EXPECT_TRUE(of(text).any) << text;
   EXPECT_FALSE(of("0 mm").any);
@@ -80,8 +86,10 @@ TEST(Expression, Mistakes) {
            {"2 h", "m.toml:3:13: platform.origin[2] '2 h' has an unknown unit 'h'; known: "},
            {"sin(a)", "m.toml:3:11: platform.origin[2] 'sin(a)' takes sin of a length; give it an angle"},
            {"a*cos(-30)",
-            "m.toml:3:13: platform.origin[2] 'a*cos(-30)' takes cos of -30 rad, which is more than a turn; write "
-            "the unit, e.g. cos(-30 deg), or cos(-30 rad)"},
+            "m.toml:3:13: platform.origin[2] 'a*cos(-30)' takes cos of -30 without a unit; write cos(-30 deg), or "
+            "cos(-30 rad)"},
+           {"a*cos( 22.5 )", "m.toml:3:13: platform.origin[2] 'a*cos( 22.5 )' takes cos of 22.5 without a unit; "},
+           {"sind(30)", "m.toml:3:11: platform.origin[2] 'sind(30)' has an unknown function 'sind'; write sin of a "},
            {"sqrt(a)",
             "m.toml:3:11: platform.origin[2] 'sqrt(a)' takes the root of a length; take the root of a square"},
            {"atan(a)", "m.toml:3:11: platform.origin[2] 'atan(a)' takes atan of a length; give it a number, e.g. a/b"},
