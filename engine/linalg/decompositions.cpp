@@ -34,6 +34,8 @@ SingularValueDecomposition singular_value_decomposition(const ConstMatrix& A) {
   return {svd.matrixU(), svd.singularValues(), svd.matrixV()};
 }
 
+double determinant(const ConstMatrix& A) { return A.size() == 0 ? 1.0 : A.partialPivLu().determinant(); }
+
 std::size_t rank(const ConstMatrix& A, double threshold) {
   if (A.cols() == 0) return 0;
   Jacobi svd(A);

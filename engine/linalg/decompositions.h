@@ -30,6 +30,7 @@ SingularValueDecomposition right_singular_vectors(const ConstMatrix& A);  ///< v
 SingularValueDecomposition singular_value_decomposition(const ConstMatrix& A);
 /// @}
 
+double determinant(const ConstMatrix& A);  ///< The determinant of a square matrix; 1 for an empty one.
 /// The rank: the number of singular values above threshold times the largest one; 0 for a matrix without columns.
 std::size_t rank(const ConstMatrix& A, double threshold);
 

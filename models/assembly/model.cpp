@@ -1,6 +1,5 @@
 #include "models/assembly/model.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -156,7 +155,7 @@ double condition(const AssemblyModel& model, std::span<const double> pose) {
 /// Returns true if two subspaces of the same dimension are almost equal. one, other: orthonormal bases.
 static bool are_near(const Matrix& one, const Matrix& other) {
   constexpr double kLeast = 0.999;  // product of the cosines of the angles between them
-  return one.cols() == other.cols() && std::abs((one.transpose() * other).determinant()) > kLeast;
+  return one.cols() == other.cols() && std::abs(linalg::determinant(one.transpose() * other)) > kLeast;
 }
 
 bool are_separated(const AssemblyModel& model, std::span<const double> one, std::span<const double> other) {
@@ -177,7 +176,7 @@ bool are_separated(const AssemblyModel& model, std::span<const double> one, std:
   const auto determinant = [&](const Matrix& columns) {
     Matrix bordered = Matrix::Zero(columns.rows() + idle.cols(), columns.cols() + left.cols());
     bordered << columns, left, idle.transpose(), Matrix::Zero(idle.cols(), left.cols());
-    return bordered.determinant();
+    return linalg::determinant(bordered);
   };
   return determinant(at_one) * determinant(at_other) < 0.0;
 }

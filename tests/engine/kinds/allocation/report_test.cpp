@@ -249,7 +249,9 @@ TEST_F(AllocationReport, TellsTheWayAndWhatElseWouldCost) {
             "99.9   12.5      25\n"
             "yield: what a study would ask for and certify with the same margin, so that more of its machines\n"
             "would be good\n"
-            "predicted, not certified; change: from the cost of the tolerances found\n");
+            "predicted, not certified; change: from the cost of the tolerances found\n"
+            "tolerances go in steps (grades, processes, rounded numbers), so costs jump, and the tolerances that\n"
+            "a study finds may cost some per cent more than this\n");
   EXPECT_EQ(text_of(table("cost_of_limits"), kUnlimitedWidth),
             "What other limits would cost\n"
             "all limits\n"
@@ -259,7 +261,9 @@ TEST_F(AllocationReport, TellsTheWayAndWhatElseWouldCost) {
             "       1      10       0\n"
             "errors that are in no part keep their size, so far from the study's limits these costs may be off by\n"
             "a third; run the study with the limits that you want\n"
-            "predicted, not certified; change: from the cost of the tolerances found\n");
+            "predicted, not certified; change: from the cost of the tolerances found\n"
+            "tolerances go in steps (grades, processes, rounded numbers), so costs jump, and the tolerances that\n"
+            "a study finds may cost some per cent more than this\n");
 }
 
 TEST_F(AllocationReport, StatesSigmasOnceWhereAllAreAlike) {
