@@ -123,8 +123,8 @@ toml::table parsed(const std::string& text, const std::vector<std::string_view>&
     refuse_open_quote(text, path, error.source().begin);
     std::string_view reason = error.description();
     if (reason.find("utf-8") != std::string_view::npos || text.starts_with("\xFF\xFE")) {
-      throw InputError({path, error.source().begin.line, error.source().begin.column}, "this is not a text in UTF-8",
-                       "save the file in UTF-8");
+      throw InputError({path, error.source().begin.line, error.source().begin.column},
+                       "this is not TOML, because the text is not in UTF-8", "save the file in UTF-8");
     }
     constexpr std::string_view kPrefix = "Error while ";
     if (reason.starts_with(kPrefix)) reason.remove_prefix(kPrefix.size());

@@ -260,7 +260,7 @@ INSTANTIATE_TEST_SUITE_P(
                                          "ELF\x02\x01^\x00\xFF\xFE",
                                          10),
                              {"not TOML"}},
-                    BadStudy{"InvalidUtf8", "\"A study\"", "\"A s^t\xC3\x28\"", {"not TOML", "utf-8"}},
+                    BadStudy{"InvalidUtf8", "\"A study\"", "\"A s^t\xC3\x28\"", {"not TOML", "UTF-8"}},
                     BadStudy{"OpenText", "\"A study\"\n", "^\"A study\n", {"is not closed on its line"}},
                     BadStudy{"NoValue", "count = 20\n", "count =^\n", {"not TOML"}},
                     BadStudy{"KeyTwice", "count = 20\n", "count = 20\ncount = ^21\n", {"not TOML", "count"}},

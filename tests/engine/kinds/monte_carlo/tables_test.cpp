@@ -308,7 +308,7 @@ TEST(MonteCarloTable, PutsWhatIsNotCertainIntoOneLine) {
             "error                                           yield    low   high   slope   scatter\n"
             "                                                  [%]    [%]    [%]               [%]\n"
             "epsilon_1                                         -20  -25    -15    -3.491        70\n"
-            "delta_1                                            -1   -1.5   -0.5  -0.01         10\n"
+            "delta_1                                            -1   -1.5   -0.5  -0.01         50\n"
             "2 errors whose effects are not certain              -      -      -       -         -\n"
             "1 error of which these machines do not tell it      -      -      -       -         -\n");
 }
@@ -343,7 +343,7 @@ TEST(MonteCarloTable, ShowsNoEffectThatIsChanceAmongMany) {
       "rows are listed because their interval excludes zero, the largest loss first, errors whose share may be zero "
       "last; of many uncertain effects those that are listed are overestimated as a rule, so compare a change with "
       "the share of the scatter");
-  EXPECT_EQ(table.notes[3], "share of scatter: of the scatter of linear_deformation");
+  EXPECT_EQ(table.notes[3], "share of scatter: the largest of the shares of the scatter of linear_deformation, ratio");
 }
 
 /// An error without a share of the scatter is not listed, even if the interval of its effect excludes zero.
