@@ -134,8 +134,7 @@ static std::string given_size_doubt(const Study& study, const Model& model) {
       const Factor& factor = study.model().factors[error.value];
       return fmt::format(
           "errors.machines has {} = {}, more than half of {} ({}), but its values are deviations from the nominal "
-          "size; "
-          "are these sizes?",
+          "size; are these sizes?",
           factor.name, readable_text({value, factor.dimension}), bound.part,
           readable_text({bound.size, factor.dimension}));
     }

@@ -49,8 +49,7 @@ const Group<Result> kAllocation{
       Presence::where_computed},
      {"bound", &Result::bound, "1",
       "0: T is between its bounds; 1: at the lower one; 2: at the upper one; 3: there is no choice; 4: at the upper "
-      "one, "
-      "because no limit depends on it"},
+      "one, because no limit depends on it"},
      {"chosen", &Result::chosen, "1", "Process or grade of the part; empty where there is none"},
      {"unit", &Result::part_unit, "1", "SI unit of T"},
      {"members", &Result::part_members, "1", "Errors of the part, with blanks between"},

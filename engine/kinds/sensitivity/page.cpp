@@ -303,8 +303,7 @@ MethodWords method(const StoredResult&) {
       "The index of an error is the standard deviation of the response over that of the error while only this error "
       "varies; indices over the workspace are the mean of the poses' indices plus their standard deviation, "
       "without the noise of sampling, and have intervals by the method of Zou and Donner. The effect of an error is "
-      "its "
-      "index times its standard deviation.",
+      "its index times its standard deviation.",
       {kDu, kZouDonner}};
 }
 

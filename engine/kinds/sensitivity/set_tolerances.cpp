@@ -302,8 +302,7 @@ void claim_tolerance_files(OutputFolder& folder, const StoredResult& result, con
 /// A comment in the studies that test tolerances.
 static constexpr std::string_view kChance =
     "the tolerances are exactly at the limit, as far as the indices say, so chance decides between PASS and FAIL: a "
-    "root "
-    "mean square within some per cent of the limit confirms them";
+    "root mean square within some per cent of the limit confirms them";
 
 Confirmation write_confirmation(const std::string& folder, const StoredResult& result,
                                 const ResponseTolerances& tolerances, const Catalog& catalog) {
