@@ -219,12 +219,12 @@ std::string limits_sentence(const StoredResult& result) {
 
 std::string repeat_sentence(const StoredResult& result, const StudyWords& words) {
   const std::string seed = seed_text(result, words);
-  constexpr std::size_t kDigits = 12;  // enough to tell results apart; a line of 85 mm has no room for all 64
+  constexpr std::size_t kHashDigits = 12;  // enough to tell results apart; a line of 85 mm has no room for all 64
   return fmt::format(
       "{}The same study gives the same bits on any number of threads (the SHA-256 of the result begins "
       "with {}).",
       seed.empty() ? "" : fmt::format("Draws are addressed by the seed {} (Philox). ", seed),
-      result.content_sha256.substr(0, kDigits));
+      result.content_sha256.substr(0, kHashDigits));
 }
 
 /// The text and the sources that the kind of study adds to the method; empty if it adds nothing.
