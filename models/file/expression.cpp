@@ -35,11 +35,10 @@ bool is_unit_of_geometry(std::string_view name) {
   return unit != nullptr && (unit->dimension == Dimension::length || unit->dimension == Dimension::angle);
 }
 
-/// Returns true if the argument of a trigonometric function is a number as written, and not a small fraction, so that
-/// it may be in degrees. Computed numbers, such as an arc over a radius, are radians.
+/// Returns true if the argument of a trigonometric function is a number as written, so that nobody can know whether it
+/// is in degrees. Computed numbers, such as an arc over a radius, are radians.
 bool is_angle_without_unit(std::string_view written, double value) {
-  const bool is_fraction = std::round(value) != value && std::abs(value) <= 2.0 * std::numbers::pi;
-  return value != 0.0 && !is_fraction && parse_number(written).has_value();
+  return value != 0.0 && parse_number(written).has_value();
 }
 
 /// A recursive descent parser. Each function reads the construct that it is named after, from character number `at_` of

@@ -64,7 +64,7 @@ TEST(Expression, OtherDimensions) {
 TEST(Expression, TakesComputedNumbersAsRadians) {
   EXPECT_DOUBLE_EQ(of("cos(a/(3 mm))").si, std::cos(of("a").si / 3e-3));
   EXPECT_NEAR(of("cos(6*pi)").si, 1.0, 1e-12);
-  EXPECT_DOUBLE_EQ(of("cos(0.5)").si, std::cos(0.5));
+  EXPECT_DOUBLE_EQ(of("cos(0.5 rad)").si, std::cos(0.5));
 }
 
 TEST(Expression, BareZeroIsAnyQuantity) {
@@ -88,6 +88,7 @@ TEST(Expression, Mistakes) {
            {"a*cos(-30)",
             "m.toml:3:13: platform.origin[2] 'a*cos(-30)' takes cos of -30 without a unit; write cos(-30 deg), or "
             "cos(-30 rad)"},
+           {"a*cos(0.5)", "m.toml:3:13: platform.origin[2] 'a*cos(0.5)' takes cos of 0.5 without a unit; "},
            {"a*cos( 22.5 )", "m.toml:3:13: platform.origin[2] 'a*cos( 22.5 )' takes cos of 22.5 without a unit; "},
            {"sind(30)", "m.toml:3:11: platform.origin[2] 'sind(30)' has an unknown function 'sind'; write sin of a "},
            {"sqrt(a)",
