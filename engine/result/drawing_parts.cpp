@@ -59,7 +59,7 @@ DrawingResult read_drawing(const h5::File& file) {
 void append_drawing_tables(CsvTables& tables, const std::vector<std::string>& responses, const DrawingResult& found) {
   const std::size_t features = found.features();
   CsvTable table{"features",
-                 {"response", [&](std::size_t line) { return responses[line / features]; }},
+                 {"response", [&, features](std::size_t line) { return responses[line / features]; }},
                  responses.size() * features};
   const auto of = [features](const auto& array) {
     return [&array, features](std::size_t line) { return array(line / features, line % features); };

@@ -655,6 +655,23 @@ std::string shown_machines(const TemplateLines& lines, const Study&) {
          "# machines = \"parts.csv\"\n";
 }
 
+/// Returns true if errors of this dimension have the size of all errors of the dimension in a template, where
+/// errors.zones states how features scatter.
+bool uses_usual_size(Dimension dimension, Study study) {
+  study.errors.zones.emplace();
+  const std::vector<std::optional<Distribution>> zones = distributions_by_zones(study);
+  const std::vector<Factor>& factors = study.model().factors;
+  for (std::size_t f = 0; f < factors.size(); ++f) {
+    if (factors[f].dimension == dimension && !zones[f]) return true;
+  }
+  return false;
+}
+
+template <Dimension kDimension>
+std::string shown_usual(const TemplateLines& lines, const Study& study) {
+  return lines.usual("errors", error_kind(kDimension), uses_usual_size(kDimension, study) ? "" : "# ");
+}
+
 template <Dimension kDimension>
 StudyRow usual_row(std::string_view meaning) {
   return {.name = error_kind(kDimension),
@@ -662,11 +679,12 @@ StudyRow usual_row(std::string_view meaning) {
           .usual = "`" + error_text({default_distribution(kDimension)}, kDimension, readable_value) + "`",
           .meaning = meaning,
           .reader = read_usual<kDimension>,
-          .lines = usual_line<kDimension>};
+          .lines = usual_line<kDimension>,
+          .shown = shown_usual<kDimension>};
 }
 
 std::string shown_relative(const TemplateLines& lines, const Study& study) {
-  return has_errors_of(Dimension::number, study.model()) ? lines.usual("errors", "relative") : "";
+  return uses_usual_size(Dimension::number, study) ? lines.usual("errors", "relative") : "";
 }
 
 StudyRow relative_row() {

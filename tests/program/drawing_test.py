@@ -106,7 +106,7 @@ class Drawing(ProgramTest):
         self.assertIn("worst case, with all features in their zones, to first order: 0.7656 mm", " ".join(shown.split()))
         self.succeeds("export", "mc.h5", "-d", "tables")
         lines = (self.folder / "tables" / "features.csv").read_text().splitlines()
-        self.assertEqual(len(lines), 1 + len(names) * len(features))
+        self.assertEqual([line.split(",")[0] for line in lines[1:]], [name for name in names for _ in features])
         self.assertNotIn("'", "".join(lines))
 
     def test_advice_names_features(self):
@@ -119,6 +119,13 @@ class Drawing(ProgramTest):
         self.succeeds("report", "mc.h5", "-o", "mc.html")
         advice = re.search(r"what adds most to the scatter of tip_position: (\w+) \(", (self.folder / "mc.html").read_text())
         self.assertIn(advice.group(1), first)
+
+    def test_template_states_only_the_sizes_that_it_uses(self):
+        """All lengths of this mechanism are in zones, but not all of its angles."""
+        template = self.succeeds("template", "delta.toml")
+        self.assertNotIn("linear =", template)
+        self.assertIn("angular =", template)
+        self.assertIn('# linear = { distribution = "normal"', self.succeeds("template", "delta.toml", "--full"))
 
     def test_template_of_an_allocation_joins_limbs_that_are_alike(self):
         self.assertIn("zones = \"all\", each = true, identical_limbs = [1, 2, 3]", self.succeeds("template", "delta.toml", "allocation"))
