@@ -31,6 +31,15 @@ std::string readable_quoted(std::string_view quoted) {
   }
 }
 
+/// A number or a word without quotes as in a study. A number with many digits, such as 4.9999999999999996e-05 of
+/// "50 um/m", is rounded to 12.
+std::string readable_bare(std::string_view word) {
+  constexpr std::size_t kMany = 15;  // more characters are due to rounding of the last digits
+  const bool has_rounding = word.size() > kMany && word.find('.') != std::string_view::npos;
+  const std::optional<double> number = has_rounding ? parse_number(word) : std::nullopt;
+  return number ? number_text(*number, 12) : std::string(word);
+}
+
 }  // namespace
 
 std::size_t response_named(const StoredResult& result, std::string_view name) {
@@ -202,6 +211,7 @@ Cell index_cell(double index, double scale, double rounding) {
 }
 
 std::string readable_setting(std::string_view value) {
+  constexpr std::string_view kMarks = "\"{}[], ";  // between numbers and words
   std::string text;
   while (!value.empty()) {
     const char first = value.front();
@@ -211,8 +221,9 @@ std::string readable_setting(std::string_view value) {
       value.remove_prefix(end + 1);
       continue;
     }
-    if (first != '{' && first != '}') text += first;
-    value.remove_prefix(1);
+    const std::size_t word = std::clamp(value.find_first_of(kMarks), std::size_t{1}, value.size());
+    if (first != '{' && first != '}') text += readable_bare(value.substr(0, word));
+    value.remove_prefix(word);
   }
   const std::size_t begin = text.find_first_not_of(' ');
   return begin == std::string::npos ? std::string() : text.substr(begin, text.find_last_not_of(' ') - begin + 1);

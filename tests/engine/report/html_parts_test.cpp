@@ -254,6 +254,8 @@ TEST(StudySettings, AreFoundInTheirSectionAndMadeReadable) {
   EXPECT_EQ(readable_setting(text, "errors", "linear"), "distribution = normal, sigma = 1 mm");
   EXPECT_EQ(readable_setting("\"0.017453292519943295 rad\""), "1 deg");
   EXPECT_EQ(readable_setting("\"open"), "\"open");
+  EXPECT_EQ(readable_setting("{ sigma = 4.9999999999999996e-05, samples = 1000 }"), "sigma = 5e-05, samples = 1000");
+  EXPECT_EQ(readable_setting("[0.00025000000000000001, 12345678901234567890]"), "[0.00025, 12345678901234567890]");
 }
 
 }  // namespace
