@@ -391,17 +391,28 @@ void read_usual(const StudyValue& value, Study& study, const Reading& reading) {
   set_by_zones(study);
 }
 
-/// The value in [errors.override] for a factor; none if no key names it. A key names the factor by its name or by a
-/// pattern that matches the name. If several keys name it, the last one in the file counts.
-std::optional<StudyValue> override_of(const StudySection& overrides, const std::string& factor) {
-  const auto place = [](const StudyValue& value) { return std::pair(value.place().line, value.place().column); };
-  std::optional<StudyValue> last;
+/// Returns true if a key of [errors.override] is for this error: its name, or a pattern that matches its name.
+bool is_key_of(const std::string& key, const std::string& factor) {
+  return key == factor || (is_pattern(key) && matches(key, factor));
+}
+
+/// The key in [errors.override] that counts for an error, the last one in the file that is for it; none if no key is.
+std::optional<std::string> override_key(const StudySection& overrides, const std::string& factor) {
+  const auto place = [&](const std::string& key) {
+    const Place at = overrides.require(key).place();
+    return std::pair(at.line, at.column);
+  };
+  std::optional<std::string> last;
   for (const std::string& key : overrides.keys()) {
-    if (key != factor && !(is_pattern(key) && matches(key, factor))) continue;
-    StudyValue own = overrides.require(key);
-    if (!last || place(own) > place(*last)) last = std::move(own);
+    if (is_key_of(key, factor) && (!last || place(key) > place(*last))) last = key;
   }
   return last;
+}
+
+/// The value of override_key() for an error.
+std::optional<StudyValue> override_of(const StudySection& overrides, const std::string& factor) {
+  const auto key = override_key(overrides, factor);
+  return key ? std::optional(overrides.require(*key)) : std::nullopt;
 }
 
 /// Throws InputError for a key that names no factor, and for a pattern that matches none.
@@ -416,6 +427,20 @@ void check_override(const StudySection& overrides, const Study& study) {
     overrides.require(key).fail("matches no error of the mechanism", listed_by_models(study));
   }
   overrides.allow(known, "factor");
+}
+
+/// Throws InputError for a key that has no effect, because later keys are for the same errors.
+void check_effective(const StudySection& overrides, const ModelDescription& model) {
+  for (const std::string& key : overrides.keys()) {
+    std::optional<std::string> counts;
+    for (const Factor& factor : model.factors) {
+      if (counts != key && is_key_of(key, factor.name)) counts = override_key(overrides, factor.name);
+    }
+    if (!counts || *counts == key) continue;
+    overrides.require(key).fail(
+        fmt::format("has no effect, because the later key '{}' is for the same errors", *counts),
+        "write it after that key, or remove it");
+  }
 }
 
 /// Returns true if a value of [errors.override] has only the key `draws`, so that it does not state a size.
@@ -443,6 +468,7 @@ void read_override(const StudyValue& value, Study& study, const Reading& reading
                 study.errors);
     }
   }
+  check_effective(overrides, study.model());
 }
 
 /// The largest number of values (machines times errors) in a table of given machines. Every result stores these values,

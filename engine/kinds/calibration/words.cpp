@@ -18,9 +18,20 @@ namespace {
 
 // If the p-value is smaller than this, the measurements contradict the fitted errors.
 constexpr double kContradiction = 0.01;
+// If the p-value is larger than this, the measurements contradict the noise that the table states.
+constexpr double kTooQuiet = 0.9999;
 // Two estimates are reported as correlated if the magnitude of their correlation is at least this.
 constexpr double kTogether = 0.95;
 constexpr std::size_t kAngles = 3;  // number of components of a displacement that are angles; they come first
+
+/// Returns true if a chi-square test can judge the residuals: the noise was stated, and more values than numbers that
+/// were fitted.
+bool has_test(const CalibrationResult& found) {
+  return found.converged != 0 && found.noise_is_known != 0 && found.sd_is_estimated == 0 && found.dof > 0;
+}
+
+/// Returns true if the residuals are far smaller than the noise that the table states.
+bool is_noise_too_large(const CalibrationResult& found) { return has_test(found) && found.p > kTooQuiet; }
 
 std::string some(const CalibrationResult& found, const std::vector<std::size_t>& numbers) {
   std::vector<std::string> names;
@@ -168,8 +179,9 @@ std::string residual_text(const CalibrationResult& found) {
   const std::string test =
       fmt::format("{}; chi-square {:.3g} of {} (p = {:.2g})", residual, found.chi_square, found.dof, found.p);
   if (found.sd_is_estimated != 0) return test + ": the noise follows from the residual";
-  return test + (found.p < kContradiction ? ": the fitted errors do not explain the measurements"
-                                          : ": nothing contradicts the fitted errors");
+  if (is_noise_too_large(found)) return test + ": less than the noise that the table states";
+  return test + (is_contradicted(found) ? ": the fitted errors do not explain the measurements"
+                                        : ": nothing contradicts the fitted errors");
 }
 
 std::vector<std::string> unsure_notes(const CalibrationResult& found) {
@@ -179,10 +191,7 @@ std::vector<std::string> unsure_notes(const CalibrationResult& found) {
   return notes;
 }
 
-bool is_contradicted(const CalibrationResult& found) {
-  return found.converged != 0 && found.noise_is_known != 0 && found.sd_is_estimated == 0 && found.dof > 0 &&
-         found.p < kContradiction;
-}
+bool is_contradicted(const CalibrationResult& found) { return has_test(found) && found.p < kContradiction; }
 
 std::vector<std::string> estimate_notes(const CalibrationResult& found) {
   std::vector<std::string> notes = unseen_notes(found);
@@ -289,6 +298,11 @@ std::vector<std::string> calibration_warnings(const CalibrationResult& found) {
                              : "measure it again, or fit more errors: these may not explain the measurements";
     list.push_back(fmt::format("{}: {} is {:.1f} standard deviations off{}; {}", residual, found.values[first],
                                std::abs(found.standardised(first)), others, advice));
+  }
+  if (is_noise_too_large(found)) {
+    list.push_back(residual +
+                   ": the table states more noise than the measurements have, so that intervals are too wide; is its "
+                   "unit right?");
   }
   if (is_contradicted(found) && outliers.empty()) {
     list.push_back(

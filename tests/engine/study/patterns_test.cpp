@@ -32,7 +32,18 @@ TEST(Patterns, YieldToWhatComesLater) {
   const std::string pattern = "\"*_2\" = { distribution = \"normal\", sigma = \"3 mm\" }\n";
   const std::string name = "delta_2 = { distribution = \"normal\", sigma = \"4 mm\" }\n";
   EXPECT_DOUBLE_EQ(sigma(read("[errors.override]\n" + pattern + name), 2), 4e-3);
-  EXPECT_DOUBLE_EQ(sigma(read("[errors.override]\n" + name + pattern), 2), 3e-3);
+  const std::string wider = "\"delta_*\" = { distribution = \"normal\", sigma = \"5 mm\" }\n";
+  EXPECT_DOUBLE_EQ(sigma(read("[errors.override]\n" + wider + pattern), 2), 3e-3);
+}
+
+TEST(Patterns, AreRefusedWhereEarlierKeysHaveNoEffect) {
+  const test::Marked text(
+      study_text("[errors.override]\ndelta_2 = ^{ distribution = \"normal\", sigma = \"5 mm\" }\n"
+                 "\"delta_*\" = { distribution = \"normal\", sigma = \"1 mm\" }\n"));
+  test::expect_input_error(
+      [&] { study_of_text(text.text, "study.toml", kCatalog, StudyUse::run); }, {"study.toml", text.line, text.column},
+      {"errors.override.delta_2 has no effect, because the later key 'delta_*' is for the same errors",
+       "after that key"});
 }
 
 TEST(Patterns, NameTheErrorsThatVary) {
