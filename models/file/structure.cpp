@@ -203,6 +203,11 @@ std::vector<std::string> home_outside(const Mechanism& mechanism) {
   return list;
 }
 
+std::vector<std::string> loads_without_effect(const Mechanism& mechanism) {
+  if (mechanism.is_elastic() || !mechanism.load.acts_on(mechanism.bodies)) return {};
+  return {"the load has no effect, because no joint, link or limb has stiffness"};
+}
+
 /// Returns true if the points of two joints are one point, up to the rounding of numbers in files.
 static bool are_at_one_point(const Joint& a, const Joint& b, double reach) {
   constexpr double kRounding = 1e-6;  // share of the reach

@@ -95,6 +95,7 @@ std::vector<std::string> TrackedModel::remarks() const { return rounding_remarks
 std::vector<std::string> TrackedModel::unusual_geometry() const {
   std::vector<std::string> list = home_outside(mechanism_);
   std::ranges::move(axes_along_legs(mechanism_), std::back_inserter(list));
+  std::ranges::move(loads_without_effect(mechanism_), std::back_inserter(list));
   return list;
 }
 

@@ -28,6 +28,16 @@ TEST(Frames, AreRightHanded) {
   }
 }
 
+TEST(Loads, AreAskedAboutWithoutStiffness) {
+  const auto found = [](const std::string& name, const std::string& load) {
+    const MechanismFile file = read_mechanism_file(text_of(name) + "\n[load]\n" + load, "m.toml");
+    return loads_without_effect(mechanism(file, default_geometry(file)));
+  };
+  EXPECT_EQ(found("rps3", "force = [0, 0, \"-50 N\"]\n").size(), 1u);
+  EXPECT_TRUE(found("rps3", "force = [0, 0, 0]\n").empty());
+  EXPECT_TRUE(found("tripteron-msa", "force = [0, 0, \"-50 N\"]\n").empty());
+}
+
 /// An axis of a universal joint that lies along its leg is asked about, at either end of the leg.
 TEST(Frames, OfUniversalJointsLieAcrossTheLeg) {
   const auto found = [](const std::string& written, const std::string& instead) {
