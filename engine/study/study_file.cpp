@@ -6,7 +6,6 @@
 #include <span>
 
 #include "engine/base/contract.h"
-#include "engine/base/plain_file.h"
 #include "engine/base/text.h"
 #include "engine/schema/keys_given.h"
 #include "engine/schema/toml_text.h"
@@ -17,14 +16,6 @@ namespace poesy {
 namespace {
 
 constexpr std::size_t kMostStudyBytes = 1 << 20;
-
-/// Returns true if a plain file has the signature of HDF5.
-bool begins_like_hdf5(const std::string& path) {
-  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
-  const PlainFile file(path);
-  std::string begin(kSignature.size(), '\0');
-  return file.is_open() && file.read(0, std::as_writable_bytes(std::span(begin))) && begin == kSignature;
-}
 
 /// Throws InputError if the result would have more than kMostCells values of one response, or if the study asks for
 /// more than kMostSolves solves.
@@ -154,9 +145,6 @@ std::vector<std::string_view> names(const StudyKinds& kinds) {
 
 Study read_study(const std::string& path, const Catalog& catalog, StudyUse use, const StudyKinds& kinds,
                  std::span<const GivenKey> given) {
-  if (begins_like_hdf5(path)) {
-    throw InputError({path}, "is an HDF5 file, such as a result of poesy, and no study", "give its study, a TOML file");
-  }
   return study_of_text(read_text(path, "study", kMostStudyBytes), path, catalog, use, kinds, nullptr, given);
 }
 

@@ -63,6 +63,10 @@ std::string read_text(const std::string& path, std::string_view what, std::size_
   std::string text;
   const auto take = [&](std::span<const std::byte> part) {
     text.append(reinterpret_cast<const char*>(part.data()), part.size());
+    if (text.starts_with("\x89HDF\r\n\x1a\n")) {
+      throw InputError({path}, "is an HDF5 file, such as a result of poesy, not a " + std::string(what),
+                       "give the " + std::string(what) + " itself");
+    }
     if (text.size() > most_bytes) {
       throw InputError(
           {path}, "has more than the " + std::to_string(most_bytes) + " bytes a " + std::string(what) + " may have",

@@ -9,8 +9,8 @@
 
 namespace poesy {
 
-/// Reads a whole file. what: the kind of file for messages ("study"). Throws InputError if it is not a plain file or
-/// has more than `most_bytes` bytes. Throws FileError if it cannot be read.
+/// Reads a whole file. what: the kind of file for messages ("study"). Throws InputError if it is not a plain file, is
+/// an HDF5 file, or has more than `most_bytes` bytes. Throws FileError if it cannot be read.
 std::string read_text(const std::string& path, std::string_view what, std::size_t most_bytes);
 
 /// A cell of a CSV line, without surrounding blanks.

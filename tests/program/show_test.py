@@ -149,9 +149,10 @@ class Show(ProgramTest):
         self.succeeds("show", "out.h5", "--width", 80)
 
     def test_a_result_is_no_study(self):
-        done = self.poesy("run", "out.h5")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("is an HDF5 file, such as a result of poesy, and no study; give its study", done.stderr.decode())
+        for command, what in (("run", "study"), ("models", "mechanism")):
+            done = self.poesy(command, "out.h5")
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(f"is an HDF5 file, such as a result of poesy, not a {what}; give the {what} itself", done.stderr.decode())
 
     def test_failures_of_both_fidelities(self):
         template = self.succeeds("template", "3-prs", "--full").replace('fidelity = "exact"', 'fidelity = "both"', 1)
