@@ -183,9 +183,8 @@ Table poses_table(const StoredResult& result) {
                   number_column(name + "_high", "high", "", 1), number_column("poses_like_it", "poses like it")}};
   for (const std::size_t r : result.headline) table.rows.push_back(poses_row(result, r));
   table.notes.push_back(
-      fmt::format("low, high: {} interval of the largest {}, from order statistics; inf: too few samples for an end. "
-                  "poses like it: other "
-                  "poses whose interval reaches above low",
+      fmt::format("low, high: {} interval of the largest {}, from order statistics; inf: too few samples for an end; "
+                  "poses like it: other poses whose interval reaches above low",
                   percent_text(found.conf_level), heading));
   for (const std::size_t r : result.headline) {
     if (std::string text = alike_text(result, r); !text.empty()) table.notes.push_back(std::move(text));
