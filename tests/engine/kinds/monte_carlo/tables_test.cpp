@@ -61,7 +61,7 @@ TEST(MonteCarloTable, ShowsAllPosesTogetherAndTheWorst) {
             "linear_deformation  mm        2       4        1        9     0  6       12        1\n"
             "ratio               1         0.5     0.75     2        2     1  1.75   inf        0\n"
             "low, high: 95 % interval of the largest q_0.95, from order statistics; inf: too few samples for an\n"
-            "end. poses like it: other poses whose interval reaches above low\n"
+            "end; poses like it: other poses whose interval reaches above low\n"
             "linear_deformation: the largest q_0.95 is at pose 0, but its samples do not tell it from pose 1\n"
             "\n"
             "First-order indices S1: the part of a response's variance that an error makes alone\n"
