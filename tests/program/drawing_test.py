@@ -127,6 +127,12 @@ class Drawing(ProgramTest):
         self.assertIn("angular =", template)
         self.assertIn('# linear = { distribution = "normal"', self.succeeds("template", "delta.toml", "--full"))
 
+    def test_no_template_for_indices_of_errors_drawn_per_pose(self):
+        (self.folder / "loose.toml").write_text((MECHANISMS / "designed-delta.toml").read_text())
+        done = self.poesy("template", "loose.toml", "sobol")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("has clearances, whose errors, such as play_x_1, are drawn per pose", done.stderr.decode())
+
     def test_template_of_an_allocation_joins_limbs_that_are_alike(self):
         self.assertIn("zones = \"all\", each = true, identical_limbs = [1, 2, 3]", self.succeeds("template", "delta.toml", "allocation"))
 

@@ -247,6 +247,16 @@ void check_draws(const Study& study, const StudySection& analysis) {
   }
 }
 
+/// A template that varies all errors would be refused if clearances are drawn anew at each pose (check_draws()).
+std::optional<Refusal> no_template(const ModelDescription& model) {
+  const std::vector<FactorIndex> loose = clearance_errors(model);
+  if (loose.empty()) return std::nullopt;
+  return Refusal{"model '" + model.name + "' has clearances, whose errors, such as " +
+                     model.factors[loose.front().value].name +
+                     ", are drawn per pose, but indices of Sobol' are of errors that a machine keeps",
+                 "take kind 'monte-carlo', or write a study of kind 'sobol' whose factors leave these errors out"};
+}
+
 void check_sobol(Study& study, const Reading& reading) {
   const StudySection analysis = reading.root.section("analysis");
   if (study.analysis.adaptive && asked_of<SobolOptions>(study.analysis).design != Design::random) {
@@ -319,6 +329,7 @@ const StudyKind kSobolStudy{.name = "sobol",
                             .draws_machines_anew = true,
                             .rows = sobol_rows,
                             .tables = sobol_tables_of_keys,
+                            .no_template = no_template,
                             .complete = check_sobol,
                             .at_pose = sobol_at_pose};
 
