@@ -128,7 +128,7 @@ class Drawing(ProgramTest):
         self.assertIn('# linear = { distribution = "normal"', self.succeeds("template", "delta.toml", "--full"))
 
     def test_no_template_for_indices_of_errors_drawn_per_pose(self):
-        (self.folder / "loose.toml").write_text((MECHANISMS / "designed-delta.toml").read_text())
+        shutil.copy(DATA / "mechanisms" / "designed-delta.toml", self.folder / "loose.toml")
         done = self.poesy("template", "loose.toml", "sobol")
         self.assertEqual(done.returncode, 2)
         self.assertIn("has clearances, whose errors, such as play_x_1, are drawn per pose", done.stderr.decode())
