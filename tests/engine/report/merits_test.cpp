@@ -1,5 +1,6 @@
 #include "engine/report/merits.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -220,7 +221,7 @@ TEST(OtherRequirements, AreErrorsThatOnlyOneResultDrawsAtEachPose) {
 TEST(RequiredBy, KnowsTheKeysOfASweep) {
   EXPECT_EQ(required_by("analysis.limits.gap", kYieldMerit), "limits");
   EXPECT_EQ(required_by("analysis.limits.gap", "root mean square of gap"), "");
-  const std::string within_gap = std::string(kLimitMerit) + "gap";
+  const std::string within_gap = fmt::format("{}gap", kLimitMerit);
   EXPECT_EQ(required_by("analysis.limits.gap", within_gap), "limits");
   EXPECT_EQ(required_by("analysis.limits.rotation", within_gap), "");
   EXPECT_EQ(required_by("analysis.draws", within_gap), "draws");
