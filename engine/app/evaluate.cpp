@@ -208,7 +208,7 @@ int evaluate(const EvaluateOptions& options) {
   if (!poses) return interrupted();
   if (!options.frames.empty()) return print_frames(options, *model, poses->poses);
   const ErrorTable errors = read_errors(options.errors, *model);
-  warn_of(bare_error_text(options.errors, errors, study));
+  for (const std::string& doubt : error_table_doubts(options.errors, errors, study)) warn_of(doubt);
   if (options.paired && poses->poses.size() != errors.rows) {
     throw InputError({options.errors}, fmt::format("{} rows of errors for {} poses", errors.rows, poses->poses.size()),
                      "--paired needs one row of errors for each pose");

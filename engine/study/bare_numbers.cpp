@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -79,6 +80,38 @@ double largest_magnitude(std::span<const double> values) {
   return *std::ranges::max_element(values, {}, [](double value) { return std::abs(value); });
 }
 
+/// Warns of an error in a column without a unit, or without a dimension, that is more than ten times as large as the
+/// study's errors of this factor.
+std::string bare_error_text(std::string_view file, const ErrorTable& table, const Study& study) {
+  for (std::size_t v = 0; v < table.bare.size(); ++v) {
+    const Factor& factor = study.model().factors[table.factors[v].value];
+    const bool is_number = factor.dimension == Dimension::number;
+    if (!table.bare[v] && !is_number) continue;
+    const double usual = error_size(study.errors.by_factor[table.factors[v].value]);
+    for (std::size_t row = 0; row < table.rows; ++row) {
+      const double value = table.values[row * table.factors.size() + v];
+      if (std::abs(value) <= kFarBeyond * usual) continue;
+      const std::string found = beyond_text(value, factor.dimension, usual, "the size that the study gives this error");
+      if (is_number) return fmt::format("{}: {}: {}; is that meant?", printable(file), printable(factor.name), found);
+      return line(file, factor.name, factor.dimension, found);
+    }
+  }
+  return {};
+}
+
+/// Warns of a row whose label says that it summarises the other rows, as tables of an inspection have them at the end.
+std::string summary_row_text(std::string_view file, const RowLabels& labels) {
+  constexpr std::array<std::string_view, 16> kSummaries{"mean",  "average", "avg",     "median", "min",   "minimum",
+                                                        "max",   "maximum", "range",   "std",    "stdev", "sd",
+                                                        "sigma", "sum",     "nominal", "total"};
+  for (const std::string& label : labels.names) {
+    if (std::ranges::find(kSummaries, lower_case(label)) == kSummaries.end()) continue;
+    return fmt::format("{}: the row {} counts as one more {}; is that meant? If it is the {} of the others, delete it",
+                       printable(file), printable(label), printable(labels.column), printable(label));
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string outside_pose_text(std::string_view file, const PoseTable& table, const PoseSet& poses,
@@ -110,21 +143,10 @@ std::vector<std::string> doubts_of(const Study& study, const SelectedPoses& pose
   return doubts;
 }
 
-std::string bare_error_text(std::string_view file, const ErrorTable& table, const Study& study) {
-  for (std::size_t v = 0; v < table.bare.size(); ++v) {
-    const Factor& factor = study.model().factors[table.factors[v].value];
-    const bool is_number = factor.dimension == Dimension::number;
-    if (!table.bare[v] && !is_number) continue;
-    const double usual = error_size(study.errors.by_factor[table.factors[v].value]);
-    for (std::size_t row = 0; row < table.rows; ++row) {
-      const double value = table.values[row * table.factors.size() + v];
-      if (std::abs(value) <= kFarBeyond * usual) continue;
-      const std::string found = beyond_text(value, factor.dimension, usual, "the size that the study gives this error");
-      if (is_number) return fmt::format("{}: {}: {}; is that meant?", printable(file), printable(factor.name), found);
-      return line(file, factor.name, factor.dimension, found);
-    }
-  }
-  return {};
+std::vector<std::string> error_table_doubts(std::string_view file, const ErrorTable& table, const Study& study) {
+  std::vector<std::string> list{bare_error_text(file, table, study), summary_row_text(file, table.labels)};
+  std::erase(list, "");
+  return list;
 }
 
 std::string bare_measurement_text(std::string_view file, const MachineFile& measurements, const Study& study) {

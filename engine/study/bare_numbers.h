@@ -22,9 +22,10 @@ std::string outside_pose_text(std::string_view file, const PoseTable& table, con
 /// (workspace_doubts()), one line for each warning. poses: the poses that the study selects.
 std::vector<std::string> doubts_of(const Study& study, const SelectedPoses& poses);
 
-/// Warns of an error in a column without a unit, or without a dimension, that is more than ten times as large as the
-/// study's errors of this factor (error_size()).
-std::string bare_error_text(std::string_view file, const ErrorTable& table, const Study& study);
+/// Warnings about a table of errors, one line for each: of an error in a column without a unit, or without a dimension,
+/// that is more than ten times as large as the study's errors of this factor (error_size()); and of a row whose label,
+/// such as "mean", says that it summarises the other rows.
+std::vector<std::string> error_table_doubts(std::string_view file, const ErrorTable& table, const Study& study);
 
 /// Warns of measured values in columns without a unit that look too large. A deviation, a standard deviation, and the
 /// difference between a measured and a commanded coordinate should be at most ten times the study's largest error of

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -564,7 +565,7 @@ void read_machines(const StudyValue& value, Study& study, const Reading& reading
   if (reading.use != StudyUse::run) return;
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   ErrorTable table = read_errors(named_file(value), *model);
-  if (std::string doubt = bare_error_text(file, table, study); !doubt.empty()) study.doubts.push_back(std::move(doubt));
+  std::ranges::move(error_table_doubts(file, table, study), std::back_inserter(study.doubts));
   take_machines(value, std::move(table), study);
 }
 

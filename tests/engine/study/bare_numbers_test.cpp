@@ -59,7 +59,10 @@ std::string study_text(std::string_view errors, std::string_view poses = "{ coun
 std::string error_text(std::string_view errors, std::string_view table) {
   const test::TempFolder folder;
   const Study study = study_of_text(study_text(errors), "study.toml", kCatalog, StudyUse::run);
-  return bare_error_text("e.csv", read_errors(folder.write("e.csv", table), kModel), study);
+  const std::vector<std::string> doubts =
+      error_table_doubts("e.csv", read_errors(folder.write("e.csv", table), kModel), study);
+  EXPECT_LE(doubts.size(), 1u);
+  return doubts.empty() ? "" : doubts.front();
 }
 
 TEST(BareNumbers, OfErrorsFarBeyondTheirSize) {
@@ -73,6 +76,12 @@ TEST(BareNumbers, OfErrorsFarBeyondTheirSize) {
   EXPECT_NE(error_text("", "part,delta_1 [mm],epsilon_1\na,1,0.18\n").find("e.csv: epsilon_1 has no unit"),
             std::string::npos)
       << "the default is 1 deg";
+}
+
+TEST(BareNumbers, OfRowsThatSummariseOthers) {
+  EXPECT_EQ(error_text("", "part,delta_1 [mm]\nT1,0.01\nT2,0.03\nMean,0.02\n"),
+            "e.csv: the row Mean counts as one more part; is that meant? If it is the Mean of the others, delete it");
+  EXPECT_EQ(error_text("", "part,delta_1 [mm]\nmeander,0.01\nsigma-2,0.03\n"), "");
 }
 
 /// The checked tables of a study are its file of poses and its measured values. Measured values are compared with the
