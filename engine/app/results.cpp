@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
@@ -22,6 +23,7 @@
 #include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
 #include "engine/report/display.h"
+#include "engine/report/far_limits.h"
 #include "engine/report/solves.h"
 #include "engine/report/table.h"
 #include "engine/report/tables.h"
@@ -145,6 +147,10 @@ ExitCode judge_limits(const Study& study, const StoredResult& result, const std:
   print("\n" + text_of(*table, output_width()));
   const LimitVerdicts& verdicts = *result.verdicts;
   if (verdicts.yield) {
+    const auto value = [&](std::size_t limit) { return std::abs(verdicts.limits[limit].value); };
+    for (const std::string& note : far_limit_notes(result, value, "value at the wanted yield")) {
+      say(Message::warning, fmt::format("{}: {}", study_path, note));
+    }
     // If a kind of study can be asked for a yield (StudyKind::ask_yield), the yield is that of the study's machines.
     // For any other kind, a yield in the result is a certificate.
     const bool certificate = study.analysis.kind != nullptr && study.analysis.kind->ask_yield == nullptr;

@@ -14,6 +14,17 @@ std::string chart_text(const PoseChart& chart) {
   return text;
 }
 
+/// The unit of a coordinate's range: that of tables; for an angle rad, if the ends have fewer digits in it than in deg.
+const Unit& range_unit(Dimension dimension, double lower, double upper) {
+  const auto characters = [&](const Unit& unit) {
+    return fmt::format("{:.6g}{:.6g}", lower / unit.si, upper / unit.si).size();
+  };
+  const Unit& usual = display_unit(dimension);
+  if (dimension != Dimension::angle) return usual;
+  const Unit& radian = *find_unit("rad");
+  return characters(radian) < characters(usual) ? radian : usual;
+}
+
 std::string curve_text(const NamedCurve& curve, const ModelDescription& model) {
   const PoseChart& chart = model.charts[curve.chart];
   std::string origin;
@@ -78,8 +89,7 @@ std::string model_text(const CatalogEntry& entry) {
   text += "\npose coordinates and default workspace\n";
   for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
     const PoseCoordinate& coordinate = model.pose_coordinates[c];
-    const Unit& unit =
-        coordinate.dimension == Dimension::angle ? *find_unit("rad") : display_unit(coordinate.dimension);
+    const Unit& unit = range_unit(coordinate.dimension, model.pose_lower[c], model.pose_upper[c]);
     text += fmt::format("  {:<16} {:>8.6g} to {:<8.6g} {:<4} {}\n", coordinate.name, model.pose_lower[c] / unit.si,
                         model.pose_upper[c] / unit.si, unit.name, coordinate.description);
   }

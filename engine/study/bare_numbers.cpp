@@ -101,9 +101,9 @@ std::string bare_error_text(std::string_view file, const ErrorTable& table, cons
 
 /// Warns of a row whose label says that it summarises the other rows, as tables of an inspection have them at the end.
 std::string summary_row_text(std::string_view file, const RowLabels& labels) {
-  constexpr std::array<std::string_view, 16> kSummaries{"mean",  "average", "avg",     "median", "min",   "minimum",
-                                                        "max",   "maximum", "range",   "std",    "stdev", "sd",
-                                                        "sigma", "sum",     "nominal", "total"};
+  constexpr std::array<std::string_view, 20> kSummaries{
+      "mean",  "average", "avg",   "median", "min",   "minimum", "max", "maximum", "range",     "std",
+      "stdev", "sd",      "sigma", "sum",    "total", "nominal", "usl", "lsl",     "tolerance", "limit"};
   for (const std::string& label : labels.names) {
     if (std::ranges::find(kSummaries, lower_case(label)) == kSummaries.end()) continue;
     return fmt::format("{}: the row {} counts as one more {}; is that meant? If it is the {} of the others, delete it",

@@ -335,6 +335,45 @@ std::string doubtful_size(const Mechanism& mechanism, std::size_t f) {
                      length_text(feature.size[0]), length_text(length));
 }
 
+/// The longest distance (m) at home between two joints of a limb that follow each other, or between its first or last
+/// joint and the body there.
+double longest_link(const Limb& limb) {
+  double longest = 0.0;
+  for (const Transform& link : limb.home) longest = std::max(longest, link.p.norm());
+  return longest;
+}
+
+/// A clause about an axis that is too long or too short for its part. A pin or a bore is at most as long as the longest
+/// link of its limb; a rail is neither much longer nor much shorter than the mechanism.
+std::string doubtful_length(const Mechanism& mechanism, const Feature& feature) {
+  constexpr double kLongRail = 3.0;    // in units of the reach
+  constexpr double kShortRail = 0.01;  // in units of the reach
+  if (feature.kind != FeatureKind::axis) return {};
+  const Limb& limb = mechanism.limbs[feature.limb - 1];
+  const auto slides = [&](std::size_t joint) {
+    return joint < limb.joints.size() && limb.joints[joint].motion == Motion::prismatic;
+  };
+  const bool is_rail = slides(feature.frame) || (feature.frame > 0 && slides(feature.frame - 1));
+  const double length = feature.size[0];
+  const double most = is_rail ? kLongRail * mechanism.reach : longest_link(limb);
+  if (length > most && most > 0.0) {
+    return fmt::format("{} is {} long, but {} {}", feature.label, length_text(length),
+                       is_rail ? "the mechanism's reach is" : "the longest link of its limb is",
+                       length_text(is_rail ? mechanism.reach : most));
+  }
+  if (!is_rail || length >= kShortRail * mechanism.reach) return {};
+  return fmt::format("{} is {} long, but belongs to a slide of a mechanism with a reach of {}", feature.label,
+                     length_text(length), length_text(mechanism.reach));
+}
+
+/// A clause about a zone that is large for the mechanism.
+std::string doubtful_width(const Mechanism& mechanism, const Feature& feature, const Zone& zone) {
+  constexpr double kWide = 0.02;  // in units of the reach
+  if (zone.size <= kWide * mechanism.reach) return {};
+  return fmt::format("{} of {} is {} for a mechanism with a reach of {}", zone.key, feature.label,
+                     length_text(zone.size), length_text(mechanism.reach));
+}
+
 }  // namespace
 
 std::vector<std::string> doubtful_zones(const Mechanism& mechanism) {
@@ -342,7 +381,10 @@ std::vector<std::string> doubtful_zones(const Mechanism& mechanism) {
   for (std::size_t f = 0; f < mechanism.features.size(); ++f) {
     const Feature& feature = mechanism.features[f];
     if (std::string size = doubtful_size(mechanism, f); !size.empty()) add_new(list, std::move(size));
+    if (std::string length = doubtful_length(mechanism, feature); !length.empty()) add_new(list, std::move(length));
     for (const std::optional<Zone>& zone : {feature.location, feature.orientation}) {
+      std::string width = zone ? doubtful_width(mechanism, feature, *zone) : std::string();
+      if (!width.empty()) add_new(list, std::move(width));
       const bool needs_datums = zone && zone->key != "tolerance" && zone->key != "flatness";
       if (needs_datums && zone->datums.empty()) {
         add_new(list, fmt::format("{} of {} has no datums", zone->key, feature.label));

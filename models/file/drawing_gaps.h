@@ -19,7 +19,8 @@ std::vector<std::string> uncovered_directions(const Mechanism& mechanism);
 
 /// Clauses about doubtful zones: a location or an orientation without datums, and an orientation zone so wide that it
 /// has no effect beside the feature's location zone (drawing::widest_orientation()). There are also clauses about a
-/// distance whose nominal size is less than half or more than twice the length of its part in that direction.
+/// distance whose nominal size is less than half or more than twice the length of its part in that direction, about an
+/// axis that is too long or too short for its part, and about zones above a fiftieth of the mechanism's reach.
 std::vector<std::string> doubtful_zones(const Mechanism& mechanism);
 
 /// A clause about the first clearance, if the mechanism is over-constrained; else no clause. The model lets a clearance

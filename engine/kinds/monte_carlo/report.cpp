@@ -15,7 +15,6 @@
 #include "engine/base/nan.h"
 #include "engine/base/units.h"
 #include "engine/kinds/monte_carlo/drivers.h"
-#include "engine/kinds/monte_carlo/far_limits.h"
 #include "engine/kinds/monte_carlo/kind.h"
 #include "engine/kinds/monte_carlo/machine_report.h"
 #include "engine/kinds/monte_carlo/result.h"
@@ -23,6 +22,7 @@
 #include "engine/report/display.h"
 #include "engine/report/drawing_table.h"
 #include "engine/report/drawn_errors.h"
+#include "engine/report/far_limits.h"
 #include "engine/report/sketch_view.h"
 #include "engine/report/tables.h"
 
@@ -509,8 +509,15 @@ Answer answer(const StoredResult& result) {
 
 Settling settling(const StoredResult& result) { return {"overall means", {"all errors"}, result.headline}; }
 
+std::vector<std::string> notes_on_far_limits(const StoredResult& result) {
+  const auto rms = [&](std::size_t limit) {
+    return monte_carlo_of(result).overall_rms(result.verdicts->limits[limit].response);
+  };
+  return far_limit_notes(result, rms, "root mean square");
+}
+
 void warn(const StoredResult& result, std::vector<std::string>& list) {
-  for (const std::string& note : far_limit_notes(result)) list.push_back(note + ".");
+  for (const std::string& note : notes_on_far_limits(result)) list.push_back(note + ".");
   if (std::string text = not_settled_text(result, settling(result)); !text.empty()) list.push_back(std::move(text));
 }
 
@@ -580,7 +587,7 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
 std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOptions&) {
   const MonteCarloResult& found = monte_carlo_of(result);
   std::vector<Table> tables;
-  if (const std::vector<std::string> notes = far_limit_notes(result); !notes.empty()) {
+  if (const std::vector<std::string> notes = notes_on_far_limits(result); !notes.empty()) {
     tables.push_back(yield_table(result, *result.verdicts));
     std::ranges::copy(notes, std::back_inserter(tables.back().notes));
   }

@@ -365,6 +365,20 @@ std::string largest_shares(const SobolResult& found, std::span<const double> sha
   return text;
 }
 
+/// What to make smaller first: the row with the largest total index, and those that cannot be told from it. top: the
+/// row with the largest total index.
+std::string advice(const SobolResult& found, std::size_t r, std::size_t top) {
+  const auto& ST = found.aggregated.ST;
+  std::vector<std::string> names{found.group_names[top]};
+  for (std::size_t g = 0; g < found.groups(); ++g) {
+    const bool is_told = ST.ci_high(r, g) < ST.ci_low(r, top);
+    if (g != top && !is_told) names.push_back(found.group_names[g]);
+  }
+  const std::string what = (found.joined ? "the errors of " : "") + some_names(names);
+  return fmt::format("Make {} smaller first{}; what has a small total index may be set to its mean.", what,
+                     names.size() > 1 ? ", whose intervals do not tell them apart" : "");
+}
+
 /// The summary at the top of the report, for the response by which errors are ranked. It states total indices, and
 /// Shapley effects if there are any.
 Answer answer(const StoredResult& result) {
@@ -398,8 +412,7 @@ Answer answer(const StoredResult& result) {
   const bool wide = !(high - low <= 2.0 * kWide * ST.value(r, top));
   lines.emplace_back("What to do",
                      wide ? "Take more samples before the order of the largest is relied on: their intervals are wide."
-                          : fmt::format("Make {} smaller first; what has a small total index may be set to its mean.",
-                                        found.group_names[top]));
+                          : advice(found, r, top));
   return lines;
 }
 

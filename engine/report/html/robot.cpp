@@ -254,7 +254,8 @@ void add_motions(const StoredResult& result, const std::vector<RobotPose>& poses
 }
 
 Robot robot_figure(const StoredResult& result, const Model& model, const std::vector<RobotPose>& poses,
-                   const std::vector<RobotError>& errors, const SketchView& view, ArrayPool& pool) {
+                   const std::vector<RobotError>& errors, const ErrorShares& shares, const SketchView& view,
+                   ArrayPool& pool) {
   Robot robot{.yaw = view.yaw,
               .pitch = view.pitch,
               .scale = view.scale / kMillimetres,
@@ -275,7 +276,7 @@ Robot robot_figure(const StoredResult& result, const Model& model, const std::ve
     robot.errors.push_back({factor.name, error_words(home, error, factor), frame_number(home, error), error.axis,
                             error.turns,
                             sized ? response_text(result.factors[one.at], result.factor_sigma[one.at]) : "",
-                            std::isnan(one.share) ? "" : percent_text(one.share)});
+                            std::isnan(one.share) || !shares.joined.empty() ? "" : percent_text(one.share)});
   }
   add_motions(result, poses, errors, robot, pool);
   return robot;
@@ -288,7 +289,7 @@ std::string own_words(const StoredResult& result, std::size_t error) {
 }
 
 /// A table of the errors with their places, with the descriptions that the mechanism's file gives them, and with their
-/// shares, if there are any.
+/// shares, if there are any and if they are of single errors.
 Table errors_table(const StoredResult& result, const Sketch& sketch, std::span<const RobotError> errors,
                    const ErrorShares& shares) {
   Table table{.name = "where_errors_are",
@@ -298,7 +299,7 @@ Table errors_table(const StoredResult& result, const Sketch& sketch, std::span<c
   const bool has_words =
       std::ranges::any_of(errors, [&](const RobotError& one) { return !own_words(result, one.at).empty(); });
   if (has_words) table.columns.insert(table.columns.begin() + 1, text_column("words", "what it is"));
-  const bool shared = has_shares({errors.begin(), errors.end()});
+  const bool shared = shares.joined.empty() && has_shares({errors.begin(), errors.end()});
   if (shared) table.columns.push_back(percent_column("share", "share"));
   for (const RobotError& one : errors) {
     const SketchedError& error = sketch.errors[one.factor];
@@ -332,20 +333,26 @@ std::string legend(const PartShares& parts, const std::string& what) {
   return parts.largest > 0.0 ? colour_legend(what, "0 %", percent_text(parts.largest)) : std::string();
 }
 
+/// Returns true if pictures mark the frame of the first error, which has the largest share: shares are of single
+/// errors.
+bool is_first_marked(const std::vector<RobotError>& errors, const ErrorShares& shares) {
+  return shares.joined.empty() && has_shares(errors);
+}
+
 /// The pictures of all poses. The first kShownAtOnce pictures are visible without scripts.
 std::string pictures(const StoredResult& result, const std::vector<RobotPose>& poses,
                      const std::vector<RobotError>& errors, const SketchView& view, const PartShares& parts,
-                     const std::string& what) {
+                     const ErrorShares& shares) {
   std::string html = "<div class=\"robot-poses\">\n";
   const std::size_t none = poses.front().sketch.errors.size();
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const std::string title = title_of(result, poses[k]);
-    const std::size_t mark = has_shares(errors) ? errors.front().factor : none;
-    html += fmt::format(
-        "<div class=\"robot-pose\"{}>{}\n{}</div>\n", k < kShownAtOnce ? "" : " hidden",
-        element("p", title, "class=\"plot-title\""),
-        svg_picture(fmt::format("robot-{}", k), {kSketchWidth, view.height}, title,
-                    description(poses[k].sketch, parts, what), turnable_sketch(poses[k].sketch, view, parts, mark)));
+    const std::size_t mark = is_first_marked(errors, shares) ? errors.front().factor : none;
+    html += fmt::format("<div class=\"robot-pose\"{}>{}\n{}</div>\n", k < kShownAtOnce ? "" : " hidden",
+                        element("p", title, "class=\"plot-title\""),
+                        svg_picture(fmt::format("robot-{}", k), {kSketchWidth, view.height}, title,
+                                    description(poses[k].sketch, parts, shares.what),
+                                    turnable_sketch(poses[k].sketch, view, parts, mark)));
   }
   return html + "</div>\n";
 }
@@ -365,8 +372,10 @@ std::string caption(const StoredResult& result, const Sketch& home, const std::v
     text += fmt::format(" That of a {0} is divided evenly among its errors, because the {0} is ranked as a whole.",
                         shares.joined);
   }
-  text += fmt::format(" The frame in a strong line is that of {}, the axis of that error the longest.",
-                      result.factors[errors.front().at].name);
+  if (is_first_marked(errors, shares)) {
+    text += fmt::format(" The frame in a strong line is that of {}, the axis of that error the longest.",
+                        result.factors[errors.front().at].name);
+  }
   if (!readable_setting(result.study_text, "analysis", "calibrated").empty()) {
     text += " Displacements are shown before the actuators are corrected.";
   }
@@ -424,9 +433,9 @@ void add_robot(const ReportedResult& reported, const ErrorShares& shares, Page& 
   for (const RobotPose& pose : poses) sketches.push_back(pose.sketch);
   const SketchView view = sketch_view(sketches, kSketchYaw, kSketchPitch, kTallHeight);
   const PartShares parts = part_shares(home, errors);
-  page.figures.figures["robot"] = robot_figure(result, model, poses, errors, view, page.figures.pool);
+  page.figures.figures["robot"] = robot_figure(result, model, poses, errors, shares, view, page.figures.pool);
   section.figure("robot", caption(result, home, errors, shares),
-                 legend(parts, shares.what) + pictures(result, poses, errors, view, parts, shares.what));
+                 legend(parts, shares.what) + pictures(result, poses, errors, view, parts, shares));
   if (errors.empty()) return;
   const std::size_t open = std::min(kOpenRows, errors.size());
   section.table(errors_table(result, home, std::span(errors).first(open), shares));

@@ -65,6 +65,19 @@ std::string full_turn_clause(std::span<const Range> box, const ModelDescription&
   return {};
 }
 
+/// A clause that names the first coordinate that has a range, but a far smaller one than in the mechanism's workspace;
+/// empty if there is none. A coordinate that is held has no range.
+std::string tiny_clause(std::span<const Range> box, const ModelDescription& model) {
+  constexpr double kTiny = 0.01;  // as a share of the mechanism's range
+  for (std::size_t c = 0; c < box.size(); ++c) {
+    const Range own = own_range(model, c);
+    const double length = box[c].upper - box[c].lower;
+    if (length <= 0.0 || length >= kTiny * (own.upper - own.lower)) continue;
+    return both_ranges(box, model, c) + "; that is less than a hundredth of it";
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string apart_clause(std::span<const Range> box, const ModelDescription& model) {
@@ -78,6 +91,7 @@ std::string unusual_workspace(const PoseSelection& selection, const PoseSet& pos
   const std::span<const Range> box = selection.workspace;
   std::string clause = apart_clause(box, model);
   if (clause.empty()) clause = full_turn_clause(box, model);
+  if (clause.empty()) clause = tiny_clause(box, model);
   if (clause.empty() && poses.size() > 0) clause = mostly_outside_clause(box, poses, model);
   return clause;
 }

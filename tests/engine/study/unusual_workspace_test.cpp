@@ -26,6 +26,15 @@ TEST(UnusualWorkspace, IsNoneThatIsTheMechanismsOrNearIt) {
   EXPECT_EQ(unusual_workspace({}, {}, kModel.description()), "") << "a selection without a box";
 }
 
+TEST(UnusualWorkspace, IsOneThatIsTiny) {
+  EXPECT_EQ(
+      unusual({-0.2003, -0.2002}, {-0.2002}),
+      "z is from -200.3 mm to -200.2 mm, in the mechanism's workspace from -300 mm to -180 mm; that is less than a "
+      "hundredth of it");
+  EXPECT_EQ(unusual({-0.2, -0.2}, {-0.2}), "") << "it is held";
+  EXPECT_EQ(unusual({-0.2, -0.198}, {-0.2}), "");
+}
+
 TEST(UnusualWorkspace, IsOneThatIsApart) {
   const std::string own = ", in the mechanism's workspace from -300 mm to -180 mm";
   EXPECT_EQ(unusual({0.18, 0.3}, {0.2}), "z is from 180 mm to 300 mm" + own);

@@ -72,6 +72,21 @@ TEST(DrawingGaps, ASizeFarFromTheLengthOfItsPartIsDoubtful) {
   }
 }
 
+/// Lengths in another unit, or with a zero too many: of a rail, of a bore, and of a zone.
+TEST(DrawingGaps, AFeatureOutOfProportionIsDoubtful) {
+  const auto told = [](const std::string& written, const std::string& instead, const std::string& words) {
+    const Clauses found = doubtful_zones(read(replaced(text_of(kName), {written, instead})));
+    return std::ranges::any_of(found, [&](const std::string& one) { return one.find(words) != std::string::npos; });
+  };
+  EXPECT_TRUE(told("length = \"500 mm\"", "length = \"5 m\"", "rail is 5000 mm long, but the mechanism's reach is"));
+  EXPECT_TRUE(told("length = \"500 mm\"", "length = \"0.5 mm\"", "rail is 0.5 mm long, but belongs to a slide"));
+  const std::string cross = "name = \"cross_b\", joint = \"B\", axis = 2, kind = \"axis\", length = \"";
+  EXPECT_TRUE(told(cross + "30 mm", cross + "3000 mm", "long, but the longest link of its limb is"));
+  EXPECT_TRUE(
+      told("position = { zone = \"0.05 mm\"", "position = { zone = \"0.05 m\"", "is 50 mm for a mechanism with"));
+  EXPECT_FALSE(told(cross + "30 mm", cross + "60 mm", "long, but"));
+}
+
 /// A feature without a zone counts as a gap. An error that the file states closes the gap.
 TEST(DrawingGaps, AreWithoutZonesAndStatedErrors) {
   const std::string rod = "direction = [\"r - R\", 0, \"-h\"], tolerance = \"0.02 mm\"";

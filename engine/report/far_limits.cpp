@@ -1,11 +1,10 @@
-#include "engine/kinds/monte_carlo/far_limits.h"
+#include "engine/report/far_limits.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/kinds/monte_carlo/result.h"
 #include "engine/report/display.h"
 
 namespace poesy {
@@ -22,22 +21,23 @@ double size_of(const ValueLimit& limit) {
 
 }  // namespace
 
-std::vector<std::string> far_limit_notes(const StoredResult& result) {
+std::vector<std::string> far_limit_notes(const StoredResult& result,
+                                         const std::function<double(std::size_t limit)>& typical,
+                                         std::string_view name) {
   if (!result.verdicts || !result.verdicts->yield) return {};
   const YieldVerdict& yield = *result.verdicts->yield;
   const bool all_good = yield.rejects == 0;
   if (yield.machines == 0 || (!all_good && yield.rejects < yield.machines)) return {};
-  const MonteCarloResult& found = monte_carlo_of(result);
   std::vector<std::string> notes;
-  for (const LimitVerdict& one : result.verdicts->limits) {
-    const double rms = found.overall_rms(one.response);
+  for (std::size_t k = 0; k < result.verdicts->limits.size(); ++k) {
+    const LimitVerdict& one = result.verdicts->limits[k];
     const double limit = size_of(one.limit);
-    const double ratio = all_good ? limit / rms : rms / limit;
+    const double ratio = all_good ? limit / typical(k) : typical(k) / limit;
     if (one.limit.is_spread() || !std::isfinite(ratio) || ratio <= kFar) continue;
-    const std::string& name = result.responses[one.response].name;
+    const std::string& response = result.responses[one.response].name;
     const std::string times = number_text(ratio, 2);
-    notes.push_back((all_good ? fmt::format("The limit of {} is {} times its root mean square", name, times)
-                              : fmt::format("The root mean square of {} is {} times its limit", name, times)) +
+    notes.push_back((all_good ? fmt::format("The limit of {} is {} times its {}", response, times, name)
+                              : fmt::format("The {} of {} is {} times its limit", name, response, times)) +
                     ": look at the units of limits and sigmas");
   }
   return notes;
