@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -145,6 +146,10 @@ std::vector<std::string> doubts_of(const Study& study, const SelectedPoses& pose
 
 std::vector<std::string> error_table_doubts(std::string_view file, const ErrorTable& table, const Study& study) {
   std::vector<std::string> list{bare_error_text(file, table, study), summary_row_text(file, table.labels)};
+  for (const FactorIndex error : table.factors) {
+    const Factor& factor = study.model().factors[error.value];
+    if (list.front().empty()) list.push_back(odd_value_text(file, factor.name, factor.dimension, table.column(error)));
+  }
   std::erase(list, "");
   return list;
 }
@@ -181,6 +186,22 @@ std::string bare_column_text(std::string_view file, const MeasuredColumn& column
   if (std::abs(largest) <= kFarBeyond * size) return {};
   return line(file, column.name, dimension,
               beyond_text(largest, dimension, size, fmt::format("the size of other {} errors", error_kind(dimension))));
+}
+
+std::string odd_value_text(std::string_view file, std::string_view column, Dimension dimension,
+                           std::span<const double> values) {
+  constexpr double kOdd = 100.0;
+  constexpr std::size_t kFew = 5;
+  if (values.size() < kFew) return {};
+  std::vector<double> magnitudes;
+  for (const double value : values) magnitudes.push_back(std::abs(value));
+  const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 2);
+  std::ranges::nth_element(magnitudes, middle);
+  const double median = *middle;
+  if (!(median > 0.0) || std::abs(largest_magnitude(values)) <= kOdd * median) return {};
+  const auto text = [&](double value) { return readable_text({value, dimension}, kDigits); };
+  return fmt::format("{}: {} has {}, more than {} times its median {}; is that meant, and in the column's unit?",
+                     printable(file), printable(column), text(largest_magnitude(values)), kOdd, text(median));
 }
 
 }  // namespace poesy

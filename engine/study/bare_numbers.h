@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,8 +24,9 @@ std::string outside_pose_text(std::string_view file, const PoseTable& table, con
 std::vector<std::string> doubts_of(const Study& study, const SelectedPoses& poses);
 
 /// Warnings about a table of errors, one line for each: of an error in a column without a unit, or without a dimension,
-/// that is more than ten times as large as the study's errors of this factor (error_size()); and of a row whose label,
-/// such as "mean", says that it summarises the other rows.
+/// that is more than ten times as large as the study's errors of this factor (error_size()); of a value that is far
+/// from all others of its column (odd_value_text()); and of a row whose label, such as "mean", says that it summarises
+/// the other rows.
 std::vector<std::string> error_table_doubts(std::string_view file, const ErrorTable& table, const Study& study);
 
 /// Warns of measured values in columns without a unit that look too large. A deviation, a standard deviation, and the
@@ -36,5 +38,10 @@ std::string bare_measurement_text(std::string_view file, const MachineFile& meas
 /// (error_size()), the distribution of the study's other errors of this dimension.
 std::string bare_column_text(std::string_view file, const MeasuredColumn& column, Dimension dimension,
                              const Distribution& usual);
+
+/// Warns of the largest magnitude of a column, with or without a unit, if it is more than a hundred times the median
+/// magnitude of the column: it may be in another unit than the others. No warning for fewer than five values.
+std::string odd_value_text(std::string_view file, std::string_view column, Dimension dimension,
+                           std::span<const double> values);
 
 }  // namespace poesy

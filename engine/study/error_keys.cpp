@@ -274,6 +274,9 @@ bool take_values(const StudySection& section, StudyUse use, const Distribution& 
   const std::string path = named_file(file);
   MeasuredColumn column = read_column(path, parameters.column, parameters.dimension);
   parameters.doubt = bare_column_text(parameters.file, column, parameters.dimension, usual);
+  if (parameters.doubt.empty()) {
+    parameters.doubt = odd_value_text(parameters.file, column.name, parameters.dimension, column.values);
+  }
   parameters.values = std::move(column.values);
   if (parameters.values.size() >= Distribution::kLeastMeasured) return true;
   throw InputError(

@@ -78,6 +78,14 @@ TEST(BareNumbers, OfErrorsFarBeyondTheirSize) {
       << "the default is 1 deg";
 }
 
+TEST(BareNumbers, OfValuesFarFromTheOthers) {
+  const std::string others = "part,delta_1 [mm]\na,0.01\nb,-0.02\nc,0.01\nd,0.005\n";
+  EXPECT_EQ(
+      error_text("", others + "e,12.3\n"),
+      "e.csv: delta_1 has 12.3 mm, more than 100 times its median 0.01 mm; is that meant, and in the column's unit?");
+  EXPECT_EQ(error_text("", others + "e,0.9\n"), "");
+}
+
 TEST(BareNumbers, OfRowsThatSummariseOthers) {
   EXPECT_EQ(error_text("", "part,delta_1 [mm]\nT1,0.01\nT2,0.03\nMean,0.02\n"),
             "e.csv: the row Mean counts as one more part; is that meant? If it is the Mean of the others, delete it");
