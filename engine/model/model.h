@@ -28,6 +28,8 @@ struct Factor {
   std::size_t frame;        ///< index of the limb's frame to which the error belongs, from 0 at the base
   std::string description;  ///< explanation for users
   std::string axis = {};    ///< "x", "y" or "z" if the error is a component of a vector; empty for a scalar
+  /// If the description is that of the user: where the error is and in which direction it acts. Otherwise empty.
+  std::string place = {};
 };
 
 /// A named subset of a model's factors, in the order of the model's list.

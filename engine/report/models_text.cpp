@@ -105,7 +105,8 @@ std::string model_text(const CatalogEntry& entry) {
   for (const SourceSet& source : model.sources) text += fmt::format("  {:<16} {}\n", source.name, source.set);
   text += "\nerror factors\n";
   for (const Factor& factor : model.factors) {
-    text += fmt::format("  {:<16} {:>8} {}\n", factor.name, si_unit(factor.dimension), factor.description);
+    text += fmt::format("  {:<16} {:>8} {}{}\n", factor.name, si_unit(factor.dimension), factor.description,
+                        factor.place.empty() ? "" : "; " + factor.place);
   }
   text += responses_text(model, entry.other_metric != nullptr);
   for (const CatalogEntry* by = entry.other_metric.get(); by != nullptr; by = by->other_metric.get()) {

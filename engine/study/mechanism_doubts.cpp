@@ -108,6 +108,26 @@ std::vector<std::string> mechanism_doubts(const MechanismChoice& mechanism, cons
   return list;
 }
 
+/// A question about the first response of the study that is relative to a pose outside the mechanism's workspace; empty
+/// if there is none.
+static std::string reference_doubt(const Study& study) {
+  const ModelDescription& model = study.model();
+  for (const OwnResponse& own : study.mechanism.responses) {
+    if (!own.relative_to || own.relative_to->is_previous()) continue;
+    for (std::size_t c = 0; c < own.relative_to->pose.size(); ++c) {
+      const double value = own.relative_to->pose[c];
+      const double margin = 1e-9 * (model.pose_upper[c] - model.pose_lower[c]);
+      if (value >= model.pose_lower[c] - margin && value <= model.pose_upper[c] + margin) continue;
+      const PoseCoordinate& coordinate = model.pose_coordinates[c];
+      const auto text = [&](double si) { return readable_text({si, coordinate.dimension}); };
+      return asked_back(fmt::format("{} is relative to a pose with {} = {}, outside the workspace from {} to {}",
+                                    own.name, coordinate.name, text(value), text(model.pose_lower[c]),
+                                    text(model.pose_upper[c])));
+    }
+  }
+  return {};
+}
+
 std::vector<std::string> workspace_doubts(const Study& study, const PoseSet& poses) {
   std::vector<std::string> list;
   const auto add = [&](std::string_view table, const PoseSelection& selection, const PoseSet& selected) {
@@ -115,6 +135,7 @@ std::vector<std::string> workspace_doubts(const Study& study, const PoseSet& pos
     if (!clause.empty()) list.push_back(asked_back(fmt::format("[{}] workspace: {}", table, clause)));
   };
   add("poses", study.poses, poses);
+  if (std::string doubt = reference_doubt(study); !doubt.empty()) list.push_back(std::move(doubt));
   if (!study.analysis.calibration) return list;
   const CalibrationTable& calibration = *study.analysis.calibration;
   if (calibration.poses) add("analysis.calibration.poses", *calibration.poses, {});

@@ -22,7 +22,8 @@ std::vector<std::string> geometry_doubts(const MechanismChoice& mechanism);
 std::vector<std::string> mechanism_doubts(const MechanismChoice& mechanism, const Model& model);
 
 /// Questions about the boxes in which a study seeks poses, one line each: a box that looks as if a sign or a unit were
-/// wrong (unusual_workspace()). poses: the poses that [poses] selects.
+/// wrong (unusual_workspace()); and one about a response that is relative to a pose outside the mechanism's workspace.
+/// poses: the poses that [poses] selects.
 std::vector<std::string> workspace_doubts(const Study& study, const PoseSet& poses);
 
 /// Questions about the standard deviations of drawn errors, at most one for lengths and one for angles. A question

@@ -221,7 +221,7 @@ void add_vector(const ErrorLines& error, const Numbers& numbers, Mechanism& mech
       const std::string name = error.name.name + (vector ? "_" + axis : "") + number_suffix(slot, k);
       const chain::ErrorTerm term{slot.limbs[k], slot.frames[k], component, scale};
       Factor made = factor(mechanism, term, name, axis);
-      if (!error.description.empty()) made.description = error.description;
+      if (!error.description.empty()) made.place = std::exchange(made.description, error.description);
       made.description += growing.text;
       if (growing.way) made.dimension = Dimension::number;
       chain::ErrorTerms terms = about_joint(mechanism, term);
@@ -290,8 +290,14 @@ void add_combination(const ErrorLines& error, const Combination& made, const std
   const Dimension dimension = first.along         ? Dimension::number
                               : *made.length == 1 ? Dimension::length
                                                   : Dimension::angle;
-  add_error({name, dimension, first.limb + 1, first.frame,
-             (error.description.empty() ? std::move(description) : error.description) + made.growth},
+  std::string place;
+  if (!error.description.empty()) place = std::exchange(description, error.description);
+  add_error({.name = name,
+             .dimension = dimension,
+             .limb = first.limb + 1,
+             .frame = first.frame,
+             .description = description + made.growth,
+             .place = std::move(place)},
             made.terms, error.name, mechanism);
 }
 
