@@ -47,6 +47,15 @@ class RelativeResponses(ProgramTest):
         self.assertEqual(done.returncode, code, done.stderr.decode())
         return h5py.File(self.folder / f"{name}.h5")
 
+    def test_a_reference_outside_the_workspace_is_asked_about(self):
+        inside = STUDY.format(fidelity="", distribution="normal", size='sigma = "0.1 mm"', kind="monte-carlo", analysis="samples = 10",
+                              responses=HEIGHT + ZERO)
+        for z, asked in (("0", False), ('"-900 mm"', True)):
+            self.write("study.toml", inside.replace("z = 0 }", f"z = {z} }}"))
+            done = self.poesy("check", "study.toml")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual("height is relative to a pose with z = -900 mm, outside the workspace" in done.stderr.decode(), asked)
+
     def test_yield_of_a_zeroed_printer(self):
         """30.9 % of the printers keep 0.04 mm as they are, 58.0 % if they are zeroed in the middle. alpha 1e-4."""
         machines = 60000

@@ -209,6 +209,9 @@ class StudyNotes(ProgramTest):
             self.assertRegex(shown, said + r"\S+ times its (limit|root mean square): look at the units of limits and sigmas")
             self.succeeds("report", "r.h5")
             self.assertIn(said, (self.folder / "r.html").read_text())
+            self.write_rps(machines.replace("LIMIT", limit).replace("limits =", "yield = 0.5\nlimits ="))
+            warned = self.poesy("run", "study.toml", "-o", "r.h5").stderr.decode()
+            self.assertRegex(warned, r"(limit|value at the wanted yield) .*is \S+ times its (limit|value at the wanted yield)")
         for limit in ("0.1 mm", "5 um"):
             self.write_rps(machines.replace("LIMIT", limit))
             self.succeeds("run", "study.toml", "-o", "r.h5", "--quiet")
