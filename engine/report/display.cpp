@@ -31,8 +31,8 @@ std::string readable_quoted(std::string_view quoted) {
   }
 }
 
-/// A number or a word without quotes as in a study. A number with many digits, such as 4.9999999999999996e-05 of
-/// "50 um/m", is rounded to 12.
+/// A word of a setting; a number with so many digits that the last ones are rounding is rounded to 12 digits. So "50
+/// um/m" is 5e-05, not 4.9999999999999996e-05.
 std::string readable_bare(std::string_view word) {
   constexpr std::size_t kMany = 15;  // more characters are due to rounding of the last digits
   const bool has_rounding = word.size() > kMany && word.find('.') != std::string_view::npos;
@@ -211,7 +211,7 @@ Cell index_cell(double index, double scale, double rounding) {
 }
 
 std::string readable_setting(std::string_view value) {
-  constexpr std::string_view kMarks = "\"{}[], ";  // between numbers and words
+  constexpr std::string_view kMarks = "\"{}[], ";  // at which a word ends
   std::string text;
   while (!value.empty()) {
     const char first = value.front();

@@ -11,9 +11,10 @@ namespace poesy {
 
 /// Notes on limits that are more than 30 times larger or smaller than the typical magnitude of their response, if all
 /// machines or no machine is good. The likely cause is a limit or a sigma in a wrong unit. Limits on a spread are left
-/// out, and responses whose typical magnitude is not finite. typical: typical magnitude for the limit with this index,
-/// SI. name: name of this magnitude, such as "root mean square".
+/// out, and responses whose typical magnitude is not finite, or zero up to rounding. typical: typical magnitude for the
+/// limit with this index, SI. name: name of this magnitude, such as "root mean square".
 std::vector<std::string> far_limit_notes(const StoredResult& result,
-                                         const std::function<double(std::size_t limit)>& typical, std::string_view name);
+                                         const std::function<double(std::size_t limit)>& typical,
+                                         std::string_view name);
 
 }  // namespace poesy

@@ -100,15 +100,29 @@ std::string bare_error_text(std::string_view file, const ErrorTable& table, cons
   return {};
 }
 
-/// Warns of a row whose label says that it summarises the other rows, as tables of an inspection have them at the end.
+/// Warns of a row whose label says that it is no part: a statistic of the other rows, or, among parts, a limit.
 std::string summary_row_text(std::string_view file, const RowLabels& labels) {
-  constexpr std::array<std::string_view, 20> kSummaries{
-      "mean",  "average", "avg",   "median", "min",   "minimum", "max", "maximum", "range",     "std",
-      "stdev", "sd",      "sigma", "sum",    "total", "nominal", "usl", "lsl",     "tolerance", "limit"};
+  constexpr std::array<std::string_view, 10> kStatistics{"mean",  "average", "avg",   "median", "std",
+                                                         "stdev", "sd",      "sigma", "sum",    "total"};
+  constexpr std::array<std::string_view, 10> kLimits{"min",     "minimum", "max", "maximum",   "range",
+                                                     "nominal", "usl",     "lsl", "tolerance", "limit"};
+  const bool are_parts = labels.column == "part";
   for (const std::string& label : labels.names) {
-    if (std::ranges::find(kSummaries, lower_case(label)) == kSummaries.end()) continue;
-    return fmt::format("{}: the row {} counts as one more {}; is that meant? If it is the {} of the others, delete it",
-                       printable(file), printable(label), printable(labels.column), printable(label));
+    const std::string word = lower_case(label);
+    const bool is_limit = are_parts && std::ranges::find(kLimits, word) != kLimits.end();
+    if (!is_limit && std::ranges::find(kStatistics, word) == kStatistics.end()) continue;
+    return fmt::format("{}: the row {} counts as one more {}; is that meant? If not, delete it", printable(file),
+                       printable(label), printable(labels.column));
+  }
+  return {};
+}
+
+/// The odd_value_text() of the first column that has an odd value.
+std::string odd_error_text(std::string_view file, const ErrorTable& table, const Study& study) {
+  for (const FactorIndex error : table.factors) {
+    const Factor& factor = study.model().factors[error.value];
+    std::string text = odd_value_text(file, factor.name, factor.dimension, table.column(error));
+    if (!text.empty()) return text;
   }
   return {};
 }
@@ -145,11 +159,8 @@ std::vector<std::string> doubts_of(const Study& study, const SelectedPoses& pose
 }
 
 std::vector<std::string> error_table_doubts(std::string_view file, const ErrorTable& table, const Study& study) {
-  std::vector<std::string> list{bare_error_text(file, table, study), summary_row_text(file, table.labels)};
-  for (const FactorIndex error : table.factors) {
-    const Factor& factor = study.model().factors[error.value];
-    if (list.front().empty()) list.push_back(odd_value_text(file, factor.name, factor.dimension, table.column(error)));
-  }
+  std::vector<std::string> list{summary_row_text(file, table.labels), bare_error_text(file, table, study)};
+  if (list.front().empty() && list.back().empty()) list.push_back(odd_error_text(file, table, study));
   std::erase(list, "");
   return list;
 }
@@ -198,10 +209,11 @@ std::string odd_value_text(std::string_view file, std::string_view column, Dimen
   const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 2);
   std::ranges::nth_element(magnitudes, middle);
   const double median = *middle;
-  if (!(median > 0.0) || std::abs(largest_magnitude(values)) <= kOdd * median) return {};
+  const double largest = largest_magnitude(values);
+  if (!(median > 0.0) || std::abs(largest) <= kOdd * median) return {};
   const auto text = [&](double value) { return readable_text({value, dimension}, kDigits); };
   return fmt::format("{}: {} has {}, more than {} times its median {}; is that meant, and in the column's unit?",
-                     printable(file), printable(column), text(largest_magnitude(values)), kOdd, text(median));
+                     printable(file), printable(column), text(largest), kOdd, text(median));
 }
 
 }  // namespace poesy

@@ -25,8 +25,8 @@ std::vector<std::string> doubts_of(const Study& study, const SelectedPoses& pose
 
 /// Warnings about a table of errors, one line for each: of an error in a column without a unit, or without a dimension,
 /// that is more than ten times as large as the study's errors of this factor (error_size()); of a value that is far
-/// from all others of its column (odd_value_text()); and of a row whose label, such as "mean", says that it summarises
-/// the other rows.
+/// from all others of its column (odd_value_text()); and of a row whose label, such as "mean" or, among parts, "USL",
+/// says that it is no part.
 std::vector<std::string> error_table_doubts(std::string_view file, const ErrorTable& table, const Study& study);
 
 /// Warns of measured values in columns without a unit that look too large. A deviation, a standard deviation, and the

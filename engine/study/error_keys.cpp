@@ -4,8 +4,11 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <optional>
+#include <set>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "engine/base/name_pattern.h"
@@ -400,20 +403,26 @@ bool is_key_of(const std::string& key, const std::string& factor) {
   return key == factor || (is_pattern(key) && matches(key, factor));
 }
 
-/// The key in [errors.override] that counts for an error, the last one in the file that is for it; none if no key is.
+/// The place of a key in [errors.override] by which it is earlier or later than others. A key that was given on the
+/// command line or in Python has the place of the table, and is later than all keys of the file.
+std::pair<std::size_t, std::size_t> rank_of(const StudySection& overrides, const std::string& key) {
+  constexpr std::size_t kLast = std::numeric_limits<std::size_t>::max();
+  const Place at = overrides.require(key).place();
+  const bool is_given = at.line == overrides.place().line && at.column == overrides.place().column;
+  return is_given ? std::pair(kLast, kLast) : std::pair<std::size_t, std::size_t>(at.line, at.column);
+}
+
+/// The key in [errors.override] that counts for an error, the last one that is for it; none if no key is.
 std::optional<std::string> override_key(const StudySection& overrides, const std::string& factor) {
-  const auto place = [&](const std::string& key) {
-    const Place at = overrides.require(key).place();
-    return std::pair(at.line, at.column);
-  };
   std::optional<std::string> last;
   for (const std::string& key : overrides.keys()) {
-    if (is_key_of(key, factor) && (!last || place(key) > place(*last))) last = key;
+    if (!is_key_of(key, factor)) continue;
+    if (!last || rank_of(overrides, key) > rank_of(overrides, *last)) last = key;
   }
   return last;
 }
 
-/// The value of override_key() for an error.
+/// The value of the key that counts for an error; none if no key is for it.
 std::optional<StudyValue> override_of(const StudySection& overrides, const std::string& factor) {
   const auto key = override_key(overrides, factor);
   return key ? std::optional(overrides.require(*key)) : std::nullopt;
@@ -433,17 +442,17 @@ void check_override(const StudySection& overrides, const Study& study) {
   overrides.allow(known, "factor");
 }
 
-/// Throws InputError for a key that has no effect, because later keys are for the same errors.
-void check_effective(const StudySection& overrides, const ModelDescription& model) {
+/// Throws InputError for a key that counts for no error, because later keys are for all its errors. counting: the keys
+/// that count for an error.
+void check_counting(const StudySection& overrides, const std::set<std::string>& counting,
+                    const ModelDescription& model) {
   for (const std::string& key : overrides.keys()) {
-    std::optional<std::string> counts;
-    for (const Factor& factor : model.factors) {
-      if (counts != key && is_key_of(key, factor.name)) counts = override_key(overrides, factor.name);
-    }
-    if (!counts || *counts == key) continue;
-    overrides.require(key).fail(
-        fmt::format("has no effect, because the later key '{}' is for the same errors", *counts),
-        "write it after that key, or remove it");
+    if (counting.contains(key)) continue;
+    const auto first =
+        std::ranges::find_if(model.factors, [&](const Factor& factor) { return is_key_of(key, factor.name); });
+    overrides.require(key).fail(fmt::format("has no effect, because later keys, such as '{}', are for all its errors",
+                                            *override_key(overrides, first->name)),
+                                "write it after them, or remove it");
   }
 }
 
@@ -465,14 +474,17 @@ StatedError read_own_error(const StudyValue& value, Dimension dimension, StudyUs
 void read_override(const StudyValue& value, Study& study, const Reading& reading) {
   const StudySection overrides = value.section();
   check_override(overrides, study);
+  std::set<std::string> counting;
   for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
     const Factor& factor = study.model().factors[f];
-    if (const auto own = override_of(overrides, factor.name)) {
-      set_error(read_own_error(*own, factor.dimension, reading.use, stated_error(study.errors, f), study.doubts), f,
-                study.errors);
-    }
+    const auto key = override_key(overrides, factor.name);
+    if (!key) continue;
+    counting.insert(*key);
+    set_error(read_own_error(overrides.require(*key), factor.dimension, reading.use, stated_error(study.errors, f),
+                             study.doubts),
+              f, study.errors);
   }
-  check_effective(overrides, study.model());
+  if (reading.use == StudyUse::run) check_counting(overrides, counting, study.model());
 }
 
 /// The largest number of values (machines times errors) in a table of given machines. Every result stores these values,
@@ -687,10 +699,10 @@ std::string shown_machines(const TemplateLines& lines, const Study&) {
 
 /// Returns true if errors of this dimension have the size of all errors of the dimension in a template, where
 /// errors.zones states how features scatter.
-bool uses_usual_size(Dimension dimension, Study study) {
-  study.errors.zones.emplace();
-  const std::vector<std::optional<Distribution>> zones = distributions_by_zones(study);
-  const std::vector<Factor>& factors = study.model().factors;
+bool uses_usual_size(Dimension dimension, Study shown) {
+  shown.errors.zones.emplace();
+  const std::vector<std::optional<Distribution>> zones = distributions_by_zones(shown);
+  const std::vector<Factor>& factors = shown.model().factors;
   for (std::size_t f = 0; f < factors.size(); ++f) {
     if (factors[f].dimension == dimension && !zones[f]) return true;
   }
@@ -714,7 +726,7 @@ StudyRow usual_row(std::string_view meaning) {
 }
 
 std::string shown_relative(const TemplateLines& lines, const Study& study) {
-  return uses_usual_size(Dimension::number, study) ? lines.usual("errors", "relative") : "";
+  return has_errors_of(Dimension::number, study.model()) ? lines.usual("errors", "relative") : "";
 }
 
 StudyRow relative_row() {

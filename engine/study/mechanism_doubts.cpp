@@ -13,6 +13,7 @@
 #include "engine/base/units.h"
 #include "engine/model/sketch.h"
 #include "engine/study/calibration.h"
+#include "engine/study/outside_poses.h"
 #include "engine/study/poses/unusual_workspace.h"
 #include "engine/study/study_kind.h"
 
@@ -108,22 +109,24 @@ std::vector<std::string> mechanism_doubts(const MechanismChoice& mechanism, cons
   return list;
 }
 
-/// A question about the first response of the study that is relative to a pose outside the mechanism's workspace; empty
-/// if there is none.
+/// A question about the first response of the study that is relative to a pose outside both the mechanism's and the
+/// study's workspace; empty if there is none.
 static std::string reference_doubt(const Study& study) {
+  constexpr double kRounding = 1e-9;  // as a share of a coordinate's range
   const ModelDescription& model = study.model();
   for (const OwnResponse& own : study.mechanism.responses) {
     if (!own.relative_to || own.relative_to->is_previous()) continue;
-    for (std::size_t c = 0; c < own.relative_to->pose.size(); ++c) {
-      const double value = own.relative_to->pose[c];
-      const double margin = 1e-9 * (model.pose_upper[c] - model.pose_lower[c]);
-      if (value >= model.pose_lower[c] - margin && value <= model.pose_upper[c] + margin) continue;
-      const PoseCoordinate& coordinate = model.pose_coordinates[c];
-      const auto text = [&](double si) { return readable_text({si, coordinate.dimension}); };
-      return asked_back(fmt::format("{} is relative to a pose with {} = {}, outside the workspace from {} to {}",
-                                    own.name, coordinate.name, text(value), text(model.pose_lower[c]),
-                                    text(model.pose_upper[c])));
-    }
+    const std::vector<double>& pose = own.relative_to->pose;
+    const auto outside = outside_pose(PoseSet(pose.size(), pose), model, kRounding);
+    if (!outside) continue;
+    const std::size_t c = outside->coordinate;
+    const std::vector<Range>& box = study.poses.workspace;
+    if (c < box.size() && box[c].lower <= pose[c] && pose[c] <= box[c].upper) continue;
+    const PoseCoordinate& coordinate = model.pose_coordinates[c];
+    const auto text = [&](double si) { return readable_text({si, coordinate.dimension}); };
+    return asked_back(
+        fmt::format("{} is relative to a pose with {} = {}, outside the mechanism's workspace from {} to {}", own.name,
+                    coordinate.name, text(pose[c]), text(model.pose_lower[c]), text(model.pose_upper[c])));
   }
   return {};
 }

@@ -1,5 +1,7 @@
 #include "engine/study/text_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstddef>
@@ -19,6 +21,14 @@ namespace {
 }
 
 constexpr std::size_t kMostCsvBytes = std::size_t{1} << 31;
+
+/// Throws InputError if the first part of a file is that of an HDF5 file. what: the kind of file for messages.
+void refuse_hdf5(const std::string& path, std::string_view first_part, std::string_view what) {
+  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+  if (!first_part.starts_with(kSignature)) return;
+  throw InputError({path}, fmt::format("is an HDF5 file, such as a result of poesy, not a {}", what),
+                   fmt::format("give the {} itself", what));
+}
 
 /// Throws InputError if a file begins like a spreadsheet or like a text in UTF-16, which spreadsheets also write.
 void refuse_other_formats(const std::string& path, std::string_view text) {
@@ -62,11 +72,9 @@ std::string read_text(const std::string& path, std::string_view what, std::size_
   if (!file.is_open()) unreadable(path, file.error());
   std::string text;
   const auto take = [&](std::span<const std::byte> part) {
+    const bool is_first = text.empty();
     text.append(reinterpret_cast<const char*>(part.data()), part.size());
-    if (text.starts_with("\x89HDF\r\n\x1a\n")) {
-      throw InputError({path}, "is an HDF5 file, such as a result of poesy, not a " + std::string(what),
-                       "give the " + std::string(what) + " itself");
-    }
+    if (is_first) refuse_hdf5(path, text, what);
     if (text.size() > most_bytes) {
       throw InputError(
           {path}, "has more than the " + std::to_string(most_bytes) + " bytes a " + std::string(what) + " may have",

@@ -343,27 +343,39 @@ double longest_link(const Limb& limb) {
   return longest;
 }
 
+/// Returns true if a feature's axis is along a slide of its part: a rail, or the bore of a carriage that slides on one.
+bool is_along_slide(const Mechanism& mechanism, std::size_t f) {
+  constexpr double kAlong = 0.9;  // cosine of the largest angle between the two axes
+  const Feature& feature = mechanism.features[f];
+  const Limb& limb = mechanism.limbs[feature.limb - 1];
+  const std::size_t frame = feature.frame;
+  const bool is_of_end = frame == limb.joints.size();  // the axes are then those of the body at the end of the limb
+  const auto is_along = [&](const Vector3& slide) {
+    return std::abs(mechanism.feature_places[f].R.col(2).dot(slide)) > kAlong;
+  };
+  const Vector3 own = is_of_end ? Vector3(limb.home[frame].R.transpose().col(2)) : Vector3::UnitZ();
+  if (frame > 0 && limb.joints[frame - 1].motion == Motion::prismatic && is_along(own)) return true;
+  return !is_of_end && limb.joints[frame].motion == Motion::prismatic && is_along(limb.home[frame].R.col(2));
+}
+
 /// A clause about an axis that is too long or too short for its part. A pin or a bore is at most as long as the longest
-/// link of its limb; a rail is neither much longer nor much shorter than the mechanism.
-std::string doubtful_length(const Mechanism& mechanism, const Feature& feature) {
+/// link of its limb, or a fifth of the reach; a rail is neither much longer nor much shorter than the mechanism.
+std::string doubtful_length(const Mechanism& mechanism, std::size_t f) {
+  constexpr double kLongPin = 0.2;     // in units of the reach
   constexpr double kLongRail = 3.0;    // in units of the reach
   constexpr double kShortRail = 0.01;  // in units of the reach
+  const Feature& feature = mechanism.features[f];
   if (feature.kind != FeatureKind::axis) return {};
-  const Limb& limb = mechanism.limbs[feature.limb - 1];
-  const auto slides = [&](std::size_t joint) {
-    return joint < limb.joints.size() && limb.joints[joint].motion == Motion::prismatic;
-  };
-  const bool is_rail = slides(feature.frame) || (feature.frame > 0 && slides(feature.frame - 1));
   const double length = feature.size[0];
-  const double most = is_rail ? kLongRail * mechanism.reach : longest_link(limb);
-  if (length > most && most > 0.0) {
-    return fmt::format("{} is {} long, but {} {}", feature.label, length_text(length),
-                       is_rail ? "the mechanism's reach is" : "the longest link of its limb is",
-                       length_text(is_rail ? mechanism.reach : most));
+  const bool is_rail = is_along_slide(mechanism, f);
+  const std::string reach = "a mechanism with a reach of " + length_text(mechanism.reach);
+  const double link = longest_link(mechanism.limbs[feature.limb - 1]);
+  if (!is_rail && length > std::max(link, kLongPin * mechanism.reach)) {
+    return fmt::format("{} is {} long, in {} whose limb has links of at most {}", feature.label, length_text(length),
+                       reach, length_text(link));
   }
-  if (!is_rail || length >= kShortRail * mechanism.reach) return {};
-  return fmt::format("{} is {} long, but belongs to a slide of a mechanism with a reach of {}", feature.label,
-                     length_text(length), length_text(mechanism.reach));
+  if (!is_rail || (kShortRail * mechanism.reach <= length && length <= kLongRail * mechanism.reach)) return {};
+  return fmt::format("{} is along a slide and {} long, in {}", feature.label, length_text(length), reach);
 }
 
 /// A clause about a zone that is large for the mechanism.
@@ -381,7 +393,7 @@ std::vector<std::string> doubtful_zones(const Mechanism& mechanism) {
   for (std::size_t f = 0; f < mechanism.features.size(); ++f) {
     const Feature& feature = mechanism.features[f];
     if (std::string size = doubtful_size(mechanism, f); !size.empty()) add_new(list, std::move(size));
-    if (std::string length = doubtful_length(mechanism, feature); !length.empty()) add_new(list, std::move(length));
+    if (std::string length = doubtful_length(mechanism, f); !length.empty()) add_new(list, std::move(length));
     for (const std::optional<Zone>& zone : {feature.location, feature.orientation}) {
       std::string width = zone ? doubtful_width(mechanism, feature, *zone) : std::string();
       if (!width.empty()) add_new(list, std::move(width));

@@ -298,7 +298,7 @@ class Calibrate(ProgramTest):
         said = self.said_of([("next       = 5", 'prior = "tolerances"\nnext = 0'), ('sigma = "0.3 mm"', 'sigma = "0.12 mm"')])
         self.assertRegex(said, r"estimates are far outside their tolerances \(S = 52\.8 of 15\): are these the sigmas\?")
         said = self.said_of([(noise, 'noise = { z = "10 mm", distance = "50 mm" }')])
-        self.assertIn("the table states more noise than the measurements have, so that intervals are too wide", said)
+        self.assertIn("the stated noise is larger than the scatter of the measurements, so intervals are too wide", said)
         self.assertEqual(self.said_of(), "")
 
     def test_a_fit_that_ends_nowhere(self):

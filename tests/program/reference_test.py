@@ -34,7 +34,7 @@ class Reference(ProgramTest):
         for model in listed + files:
             for kind in KINDS:
                 done = self.poesy("template", model, kind)
-                if done.returncode == 2 and kind in ("identification", "coupling", "sobol"):
+                if done.returncode == 2 and (kind in ("identification", "coupling") or b"has clearances" in done.stderr):
                     continue  # the mechanism does not support this kind
                 self.assertEqual(done.returncode, 0, done.stderr)
                 count += 1

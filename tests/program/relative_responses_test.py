@@ -54,7 +54,7 @@ class RelativeResponses(ProgramTest):
             self.write("study.toml", inside.replace("z = 0 }", f"z = {z} }}"))
             done = self.poesy("check", "study.toml")
             self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertEqual("height is relative to a pose with z = -900 mm, outside the workspace" in done.stderr.decode(), asked)
+            self.assertEqual("height is relative to a pose with z = -900 mm, outside the mechanism's workspace" in done.stderr.decode(), asked)
 
     def test_yield_of_a_zeroed_printer(self):
         """30.9 % of the printers keep 0.04 mm as they are, 58.0 % if they are zeroed in the middle. alpha 1e-4."""

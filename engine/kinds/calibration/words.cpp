@@ -18,19 +18,20 @@ namespace {
 
 // If the p-value is smaller than this, the measurements contradict the fitted errors.
 constexpr double kContradiction = 0.01;
-// If the p-value is larger than this, the measurements contradict the noise that the table states.
+// If the p-value is larger than this, the measurements contradict the stated noise.
 constexpr double kTooQuiet = 0.9999;
 // Two estimates are reported as correlated if the magnitude of their correlation is at least this.
 constexpr double kTogether = 0.95;
 constexpr std::size_t kAngles = 3;  // number of components of a displacement that are angles; they come first
 
-/// Returns true if a chi-square test can judge the residuals: the noise was stated, and more values than numbers that
-/// were fitted.
+/// Returns true if a chi-square test can judge the fit: it converged, the noise is known and not estimated, and degrees
+/// of freedom are left.
 bool has_test(const CalibrationResult& found) {
   return found.converged != 0 && found.noise_is_known != 0 && found.sd_is_estimated == 0 && found.dof > 0;
 }
 
-/// Returns true if the residuals are far smaller than the noise that the table states.
+/// Returns true if the residuals, with a prior together with the estimates, are far smaller than the stated noise (and
+/// tolerances) let expect.
 bool is_noise_too_large(const CalibrationResult& found) { return has_test(found) && found.p > kTooQuiet; }
 
 std::string some(const CalibrationResult& found, const std::vector<std::size_t>& numbers) {
@@ -179,7 +180,7 @@ std::string residual_text(const CalibrationResult& found) {
   const std::string test =
       fmt::format("{}; chi-square {:.3g} of {} (p = {:.2g})", residual, found.chi_square, found.dof, found.p);
   if (found.sd_is_estimated != 0) return test + ": the noise follows from the residual";
-  if (is_noise_too_large(found)) return test + ": less than the noise that the table states";
+  if (is_noise_too_large(found)) return test + ": less than the stated noise";
   return test + (is_contradicted(found) ? ": the fitted errors do not explain the measurements"
                                         : ": nothing contradicts the fitted errors");
 }
@@ -301,8 +302,8 @@ std::vector<std::string> calibration_warnings(const CalibrationResult& found) {
   }
   if (is_noise_too_large(found)) {
     list.push_back(residual +
-                   ": the table states more noise than the measurements have, so that intervals are too wide; is its "
-                   "unit right?");
+                   (found.has_prior != 0 ? ": the stated noise or the tolerances are" : ": the stated noise is") +
+                   " larger than the scatter of the measurements, so intervals are too wide; are the units right?");
   }
   if (is_contradicted(found) && outliers.empty()) {
     list.push_back(

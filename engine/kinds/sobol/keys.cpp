@@ -233,6 +233,8 @@ void check_zone_groups(const Study& study, const StudySection& analysis) {
   }
 }
 
+constexpr std::string_view kPerPose = "drawn per pose, but indices of Sobol' are of errors that a machine keeps";
+
 /// Throws InputError if a machine draws an error anew at each pose, because a mixture of two samples takes an error
 /// from the same sample at all poses.
 void check_draws(const Study& study, const StudySection& analysis) {
@@ -240,20 +242,19 @@ void check_draws(const Study& study, const StudySection& analysis) {
     if (!study.errors.is_per_pose(factor)) continue;
     const auto value = analysis.find("factors");
     throw InputError(value ? value->place() : analysis.place(),
-                     "the error '" + study.model().factors[factor.value].name +
-                         "' is drawn per pose, but indices of Sobol' are of errors that a machine keeps",
+                     fmt::format("the error '{}' is {}", study.model().factors[factor.value].name, kPerPose),
                      "name other errors in analysis.factors, remove its draws = \"per pose\", or take kind = "
                      "\"monte-carlo\", whose S1 knows it");
   }
 }
 
-/// A template that varies all errors would be refused if clearances are drawn anew at each pose (check_draws()).
+/// The reason why a mechanism with clearances has no template: a study of all its errors would be refused
+/// (check_draws()).
 std::optional<Refusal> no_template(const ModelDescription& model) {
   const std::vector<FactorIndex> loose = clearance_errors(model);
   if (loose.empty()) return std::nullopt;
-  return Refusal{"model '" + model.name + "' has clearances, whose errors, such as " +
-                     model.factors[loose.front().value].name +
-                     ", are drawn per pose, but indices of Sobol' are of errors that a machine keeps",
+  return Refusal{fmt::format("model '{}' has clearances, whose errors, such as {}, are {}", model.name,
+                             model.factors[loose.front().value].name, kPerPose),
                  "take kind 'monte-carlo', or write a study of kind 'sobol' whose factors leave these errors out"};
 }
 

@@ -365,14 +365,13 @@ std::string largest_shares(const SobolResult& found, std::span<const double> sha
   return text;
 }
 
-/// What to make smaller first: the row with the largest total index, and those that cannot be told from it. top: the
-/// row with the largest total index.
-std::string advice(const SobolResult& found, std::size_t r, std::size_t top) {
+/// What to make smaller first: the row with the largest total index and, by size, those that cannot be told from it.
+std::string advice(const SobolResult& found, std::size_t r) {
   const auto& ST = found.aggregated.ST;
-  std::vector<std::string> names{found.group_names[top]};
-  for (std::size_t g = 0; g < found.groups(); ++g) {
-    const bool is_told = ST.ci_high(r, g) < ST.ci_low(r, top);
-    if (g != top && !is_told) names.push_back(found.group_names[g]);
+  const std::vector<std::size_t> order = by_size(ST.value.row(r));
+  std::vector<std::string> names;
+  for (const std::size_t g : order) {
+    if (!(ST.ci_high(r, g) < ST.ci_low(r, order.front()))) names.push_back(found.group_names[g]);
   }
   const std::string what = (found.joined ? "the errors of " : "") + some_names(names);
   return fmt::format("Make {} smaller first{}; what has a small total index may be set to its mean.", what,
@@ -412,7 +411,7 @@ Answer answer(const StoredResult& result) {
   const bool wide = !(high - low <= 2.0 * kWide * ST.value(r, top));
   lines.emplace_back("What to do",
                      wide ? "Take more samples before the order of the largest is relied on: their intervals are wide."
-                          : advice(found, r, top));
+                          : advice(found, r));
   return lines;
 }
 

@@ -253,6 +253,11 @@ void add_motions(const StoredResult& result, const std::vector<RobotPose>& poses
   robot.exaggeration = rounded_down(kShownMotion * kSketchHeight / (robot.scale * kMillimetres) / largest);
 }
 
+/// Returns true if errors have shares of their own. Errors that are ranked as a whole with others do not.
+bool has_own_shares(std::span<const RobotError> errors, const ErrorShares& shares) {
+  return shares.joined.empty() && has_shares({errors.begin(), errors.end()});
+}
+
 Robot robot_figure(const StoredResult& result, const Model& model, const std::vector<RobotPose>& poses,
                    const std::vector<RobotError>& errors, const ErrorShares& shares, const SketchView& view,
                    ArrayPool& pool) {
@@ -299,7 +304,7 @@ Table errors_table(const StoredResult& result, const Sketch& sketch, std::span<c
   const bool has_words =
       std::ranges::any_of(errors, [&](const RobotError& one) { return !own_words(result, one.at).empty(); });
   if (has_words) table.columns.insert(table.columns.begin() + 1, text_column("words", "what it is"));
-  const bool shared = shares.joined.empty() && has_shares({errors.begin(), errors.end()});
+  const bool shared = has_own_shares(errors, shares);
   if (shared) table.columns.push_back(percent_column("share", "share"));
   for (const RobotError& one : errors) {
     const SketchedError& error = sketch.errors[one.factor];
@@ -333,21 +338,15 @@ std::string legend(const PartShares& parts, const std::string& what) {
   return parts.largest > 0.0 ? colour_legend(what, "0 %", percent_text(parts.largest)) : std::string();
 }
 
-/// Returns true if pictures mark the frame of the first error, which has the largest share: shares are of single
-/// errors.
-bool is_first_marked(const std::vector<RobotError>& errors, const ErrorShares& shares) {
-  return shares.joined.empty() && has_shares(errors);
-}
-
 /// The pictures of all poses. The first kShownAtOnce pictures are visible without scripts.
 std::string pictures(const StoredResult& result, const std::vector<RobotPose>& poses,
                      const std::vector<RobotError>& errors, const SketchView& view, const PartShares& parts,
                      const ErrorShares& shares) {
   std::string html = "<div class=\"robot-poses\">\n";
   const std::size_t none = poses.front().sketch.errors.size();
+  const std::size_t mark = has_own_shares(errors, shares) ? errors.front().factor : none;
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const std::string title = title_of(result, poses[k]);
-    const std::size_t mark = is_first_marked(errors, shares) ? errors.front().factor : none;
     html += fmt::format("<div class=\"robot-pose\"{}>{}\n{}</div>\n", k < kShownAtOnce ? "" : " hidden",
                         element("p", title, "class=\"plot-title\""),
                         svg_picture(fmt::format("robot-{}", k), {kSketchWidth, view.height}, title,
@@ -372,7 +371,7 @@ std::string caption(const StoredResult& result, const Sketch& home, const std::v
     text += fmt::format(" That of a {0} is divided evenly among its errors, because the {0} is ranked as a whole.",
                         shares.joined);
   }
-  if (is_first_marked(errors, shares)) {
+  if (has_own_shares(errors, shares)) {
     text += fmt::format(" The frame in a strong line is that of {}, the axis of that error the longest.",
                         result.factors[errors.front().at].name);
   }

@@ -88,8 +88,10 @@ TEST(BareNumbers, OfValuesFarFromTheOthers) {
 
 TEST(BareNumbers, OfRowsThatSummariseOthers) {
   EXPECT_EQ(error_text("", "part,delta_1 [mm]\nT1,0.01\nT2,0.03\nMean,0.02\n"),
-            "e.csv: the row Mean counts as one more part; is that meant? If it is the Mean of the others, delete it");
+            "e.csv: the row Mean counts as one more part; is that meant? If not, delete it");
   EXPECT_EQ(error_text("", "part,delta_1 [mm]\nmeander,0.01\nsigma-2,0.03\n"), "");
+  EXPECT_NE(error_text("", "part,delta_1 [mm]\nT1,0.01\nUSL,0.03\n"), "");
+  EXPECT_EQ(error_text("", "name,delta_1 [mm]\nmax,0.01\nnominal,0.03\n"), "") << "cases of an evaluation";
 }
 
 /// The checked tables of a study are its file of poses and its measured values. Measured values are compared with the

@@ -78,13 +78,17 @@ TEST(DrawingGaps, AFeatureOutOfProportionIsDoubtful) {
     const Clauses found = doubtful_zones(read(replaced(text_of(kName), {written, instead})));
     return std::ranges::any_of(found, [&](const std::string& one) { return one.find(words) != std::string::npos; });
   };
-  EXPECT_TRUE(told("length = \"500 mm\"", "length = \"5 m\"", "rail is 5000 mm long, but the mechanism's reach is"));
-  EXPECT_TRUE(told("length = \"500 mm\"", "length = \"0.5 mm\"", "rail is 0.5 mm long, but belongs to a slide"));
+  EXPECT_TRUE(told("length = \"500 mm\"", "length = \"5 m\"",
+                   "rail is along a slide and 5000 mm long, in a mechanism with a reach of"));
+  EXPECT_TRUE(told("length = \"500 mm\"", "length = \"0.5 mm\"", "rail is along a slide and 0.5 mm long, in a"));
   const std::string cross = "name = \"cross_b\", joint = \"B\", axis = 2, kind = \"axis\", length = \"";
-  EXPECT_TRUE(told(cross + "30 mm", cross + "3000 mm", "long, but the longest link of its limb is"));
+  EXPECT_TRUE(told(cross + "30 mm", cross + "3000 mm", "cross_b is 3000 mm long, in a mechanism"));
   EXPECT_TRUE(
       told("position = { zone = \"0.05 mm\"", "position = { zone = \"0.05 m\"", "is 50 mm for a mechanism with"));
-  EXPECT_FALSE(told(cross + "30 mm", cross + "60 mm", "long, but"));
+  EXPECT_FALSE(told(cross + "30 mm", cross + "60 mm", "long, in"));
+  const std::string hinge = "name = \"hinge_b\", joint = \"B\", kind = \"axis\", length = \"";
+  EXPECT_FALSE(told(hinge + "40 mm", hinge + "2 mm", "long, in")) << "a bore of the carriage across the slide";
+  EXPECT_TRUE(told(hinge + "40 mm", hinge + "1400 mm", "hinge_b is 1400 mm long, in a mechanism"));
 }
 
 /// A feature without a zone counts as a gap. An error that the file states closes the gap.
