@@ -237,6 +237,7 @@ class FramesTest(ProgramTest):
         html = (self.folder / "r.html").read_text()
         self.assertIn("That of a group is divided evenly among its errors", html)
         self.assertEqual({error["share"] for error in Pictures(html).figure["errors"]}, {""})
+        self.assertIn("Make the errors of limb 1 smaller first; what has", html)  # its interval is above that of limb 3
         table = re.findall(r"data-table=\"where_errors_are\".*?</table>", html, re.S)[0]
         self.assertNotIn(">share", table)
 

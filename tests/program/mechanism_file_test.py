@@ -207,6 +207,11 @@ class MechanismFile(ProgramTest):
         with h5py.File(self.folder / result) as file:
             return list(zip(*(file["poses"][name][()] for name in ("rx", "ry", "z")), strict=True))
 
+    def test_ranges_of_angles_have_the_shorter_unit(self):
+        self.take("rps3")
+        self.assertRegex(self.succeeds("models", "rps3.toml"), r"\n  rx +-20 to 20 +deg ")
+        self.assertRegex(self.succeeds("models", "2upr-rpu"), r"\n  beta +-0.5 to 0.5 +rad ")
+
     def test_own_words_do_not_hide_where_an_error_is(self):
         text = (DATA / "mechanisms" / "rps3.toml").read_text()
         self.write("named.toml", text + '\n[[error]]\nname = "rod"\nlimb = 1\nframe = 1\ncomponent = "delta_z"\ndescription = "rod too long"\n')
