@@ -11,7 +11,7 @@ namespace poesy {
 namespace {
 
 constexpr double kFar = 30.0;
-constexpr double kRounding = 1e9;  // a larger ratio is due to a response that is zero up to rounding
+constexpr double kLargestRatio = 1e9;  // a larger ratio is due to a response that is zero up to rounding
 
 /// The magnitude of the end of a limit that is farther from zero, or of the other end if that one is infinite.
 double size_of(const ValueLimit& limit) {
@@ -34,7 +34,7 @@ std::vector<std::string> far_limit_notes(const StoredResult& result,
     const LimitVerdict& one = result.verdicts->limits[k];
     const double limit = size_of(one.limit);
     const double ratio = all_good ? limit / typical(k) : typical(k) / limit;
-    if (one.limit.is_spread() || !(ratio > kFar && ratio < kRounding)) continue;
+    if (one.limit.is_spread() || !(ratio > kFar && ratio < kLargestRatio)) continue;
     const std::string& response = result.responses[one.response].name;
     const std::string times = number_text(ratio, 2);
     notes.push_back((all_good ? fmt::format("The limit of {} is {} times its {}", response, times, name)
