@@ -110,7 +110,7 @@ std::optional<Table> drawing_table(const StoredResult& result, std::size_t respo
                             "{}, and {} where each location is divided between middle and tilt as is worst",
                             in_unit(root_mean_square(found.rms.row(response))),
                             in_unit(root_mean_square(found.rms_worst_division.row(response)))),
-                fmt::format("worst case, with all features in their zones, to first order: {}; the last column is "
+                fmt::format("worst case, with all features in their zones, to first order: {}; of the worst case: "
                             "each feature's part of it at the pose where it is largest",
                             in_unit(largest(found.worst_case.row(response)))),
                 "zones in mm; other errors are not in these numbers"},

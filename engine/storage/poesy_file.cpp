@@ -211,7 +211,7 @@ void trial_read(const std::string& path, const std::function<void()>& read, unsi
   const int status = status_of(child);
   if (!said) {
     throw FileError(path,
-                    fmt::format("cannot be read within {} s: it is damaged, or its disk does not answer", seconds),
+                    fmt::format("cannot be read within {} s: it is damaged, or the machine or its disk is busy", seconds),
                     "try again, or take another copy");
   }
   if (*said == kEndedWell) return;

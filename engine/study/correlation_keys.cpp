@@ -8,6 +8,7 @@
 #include "engine/base/text.h"
 #include "engine/random/normal_copula.h"
 #include "engine/stats/rank_correlation.h"
+#include "engine/study/override_keys.h"
 #include "engine/study/study_kind.h"
 #include "engine/study/table_file.h"
 
@@ -52,7 +53,7 @@ std::vector<MeasuredTogether> measured_together(const StudySection& errors, cons
   std::vector<MeasuredTogether> tables;
   const StudySection override = errors.section("override");
   for (std::size_t f = 0; f < model.factors.size(); ++f) {
-    const auto own = override.find(model.factors[f].name);
+    const auto own = override_of(override, model.factors[f].name);
     const auto file = own ? own->section().find("file") : std::nullopt;
     if (!file) continue;
     auto table = std::ranges::find(tables, file->text(), &MeasuredTogether::file);
@@ -82,6 +83,18 @@ std::vector<double> correlation_of(const MeasuredTogether& table, const StudySec
     }
   }
   return correlation;
+}
+
+/// Throws InputError if two errors take the same column: they would be the same number in each machine.
+void check_columns(const StudyValue& value, const MeasuredTogether& table, const ModelDescription& model) {
+  for (std::size_t k = 0; k < table.columns.size(); ++k) {
+    const auto first = std::ranges::find(table.columns, table.columns[k]) - table.columns.begin();
+    if (static_cast<std::size_t>(first) == k) continue;
+    const auto name = [&](std::size_t at) { return model.factors[table.factors[at].value].name; };
+    value.fail(fmt::format("correlates {} and {}, which take the same column '{}' of {}", name(std::size_t(first)),
+                           name(k), printable(table.columns[k]), printable(table.file)),
+               "write one [[errors.correlated]] for each part, with the factors of this part");
+  }
 }
 
 void check_definite(const StudyValue& value, std::span<const double> correlation) {
@@ -180,6 +193,7 @@ CorrelatedErrors read_block(const StudyValue& value, const Study& study, const R
     static_cast<void>(correlation.word(std::array{kAsMeasured}));
     const StudySection errors = reading.root.section("errors");
     const MeasuredTogether asked = columns_of(correlation, block.factors, errors, study.model());
+    check_columns(correlation, asked, study.model());
     if (reading.use != StudyUse::run) return {};
     block.correlation = correlation_of(asked, errors, study.model());
   } else {
@@ -195,6 +209,7 @@ void read_as_measured(const StudyValue& value, Study& study, const Reading& read
   for (const MeasuredTogether& table : measured_together(errors, study.model())) {
     if (table.factors.size() < 2 || reading.use != StudyUse::run) continue;
     check_draws(value, table.factors, study);
+    check_columns(value, table, study.model());
     study.errors.correlated.push_back({table.factors, correlation_of(table, errors, study.model())});
     check_definite(value, study.errors.correlated.back().correlation);
   }

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -15,6 +14,7 @@
 #include "engine/base/text.h"
 #include "engine/fits/fit.h"
 #include "engine/study/bare_numbers.h"
+#include "engine/study/override_keys.h"
 #include "engine/study/study_kind.h"
 #include "engine/study/table_file.h"
 
@@ -396,36 +396,6 @@ void read_usual(const StudyValue& value, Study& study, const Reading& reading) {
     if (study.model().factors[f].dimension == kDimension) set_error(error, f, study.errors);
   }
   set_by_zones(study);
-}
-
-/// Returns true if a key of [errors.override] is for this error: its name, or a pattern that matches its name.
-bool is_key_of(const std::string& key, const std::string& factor) {
-  return key == factor || (is_pattern(key) && matches(key, factor));
-}
-
-/// The place of a key in [errors.override] by which it is earlier or later than others. A key that was given on the
-/// command line or in Python has the place of the table, and is later than all keys of the file.
-std::pair<std::size_t, std::size_t> rank_of(const StudySection& overrides, const std::string& key) {
-  constexpr std::size_t kLast = std::numeric_limits<std::size_t>::max();
-  const Place at = overrides.require(key).place();
-  const bool is_given = at.line == overrides.place().line && at.column == overrides.place().column;
-  return is_given ? std::pair(kLast, kLast) : std::pair<std::size_t, std::size_t>(at.line, at.column);
-}
-
-/// The key in [errors.override] that counts for an error, the last one that is for it; none if no key is.
-std::optional<std::string> override_key(const StudySection& overrides, const std::string& factor) {
-  std::optional<std::string> last;
-  for (const std::string& key : overrides.keys()) {
-    if (!is_key_of(key, factor)) continue;
-    if (!last || rank_of(overrides, key) > rank_of(overrides, *last)) last = key;
-  }
-  return last;
-}
-
-/// The value of the key that counts for an error; none if no key is for it.
-std::optional<StudyValue> override_of(const StudySection& overrides, const std::string& factor) {
-  const auto key = override_key(overrides, factor);
-  return key ? std::optional(overrides.require(*key)) : std::nullopt;
 }
 
 /// Throws InputError for a key that names no factor, and for a pattern that matches none.

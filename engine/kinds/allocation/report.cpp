@@ -235,7 +235,7 @@ std::vector<std::string> tolerance_sizes(const Result& found) {
     std::vector<double> tolerances;
     std::vector<double> sigmas;
     for (std::size_t q = 0; q < found.parts(); ++q) {
-      if (found.part_unit(q) != unit) continue;
+      if (found.part_unit(q) != unit || found.is_left_out(q)) continue;
       tolerances.push_back(found.tolerance(q));
       sigmas.push_back(found.sigma(q));
     }

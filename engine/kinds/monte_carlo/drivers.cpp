@@ -141,6 +141,18 @@ std::string offset_note(const StoredResult& result, const YieldResult& yield, st
       percent_text(yield.offset_share(r)));
 }
 
+/// A note on the errors that come last in a table of shares although they may be large, because their shares of this
+/// response are not known; empty if there are none.
+std::string unknown_shares_note(const StoredResult& result, const YieldResult& yield, std::size_t r) {
+  std::vector<std::string> names;
+  for (std::size_t p = 0; p < result.factors.size(); ++p) {
+    if (std::isnan(yield.mean_square_share(r, p))) names.push_back(result.factors[p].name);
+  }
+  if (names.empty() || names.size() == result.factors.size()) return {};
+  return fmt::format("last, whatever their effect, because shares of correlated errors are not known: {}",
+                     some_names(names));
+}
+
 Table share_table(const StoredResult& result, const YieldResult& yield, const std::vector<std::size_t>& responses) {
   const std::size_t first = responses.front();
   std::vector<FilledColumn> columns{name_column(result.factors, "error")};
@@ -157,6 +169,9 @@ Table share_table(const StoredResult& result, const YieldResult& yield, const st
                                     "that of its vector; low, high: {} interval",
                                     percent_text(yield.conf_level))},
               .ranked = true};
+  if (std::string note = unknown_shares_note(result, yield, first); !note.empty()) {
+    table.notes.push_back(std::move(note));
+  }
   for (const std::size_t r : responses) {
     const std::string& response = result.responses[r].name;
     add("share_" + response, response, yield.mean_square_share.row(r), r == first ? 0 : 1);

@@ -141,6 +141,19 @@ std::optional<FewMatter> few_matter(const StoredResult& result) {
   return few;
 }
 
+/// The errors whose effects cannot be told from the largest, as a clause: "; not told apart from it: delta_2, delta_3".
+/// Empty if there are none.
+std::string like_largest_clause(const StoredResult& result, const RankedErrors& ranked) {
+  const GlobalIndices shown = shown_indices(result);
+  const std::size_t r = ranked.response;
+  const double low = shown.low(r, ranked.rows.front()) * result.factor_sigma[ranked.rows.front()];
+  std::vector<std::string> names;
+  for (const std::size_t p : std::span(ranked.rows).subspan(1)) {
+    if (shown.high(r, p) * result.factor_sigma[p] >= low) names.push_back(result.factors[p].name);
+  }
+  return names.empty() ? "" : "; not told apart from it: " + some_names(names);
+}
+
 /// A sentence on the error with the largest effect on the response by which errors are ranked, with the interval of the
 /// effect.
 std::string largest_text(const StoredResult& result, const RankedErrors& ranked) {
@@ -149,11 +162,11 @@ std::string largest_text(const StoredResult& result, const RankedErrors& ranked)
   const NamedUnit& response = result.responses[r];
   const GlobalIndices shown = shown_indices(result);
   const double sigma = result.factor_sigma[p];
-  return fmt::format("{} scatters {} most, by {} at its sigma of {} ({} interval {} to {}).", result.factors[p].name,
+  return fmt::format("{} scatters {} most, by {} at its sigma of {} ({} interval {} to {}){}.", result.factors[p].name,
                      response.name, response_text(response, shown.value(r, p) * sigma),
                      response_text(result.factors[p], sigma), percent_text(sensitivity_of(result).conf_level),
                      response_text(response, shown.low(r, p) * sigma),
-                     response_text(response, shown.high(r, p) * sigma));
+                     response_text(response, shown.high(r, p) * sigma), like_largest_clause(result, ranked));
 }
 
 /// A sentence on the width of the intervals of errors with an effect, and on whether indices hold at other sizes of the

@@ -164,7 +164,8 @@ std::string no_best_text(const SweepResult& found, std::size_t q, std::string_vi
 }
 
 /// Sentences on the best design: "The yield is largest at R = 375 mm: 78.9 %; not told apart from it: 350 mm. At R =
-/// 150 mm it is 14.1 % (+64.8 percentage points, interval +63.5 to +66.1)."
+/// 150 mm, the first design, it is 14.1 %; from there to the best it changes by +64.8 percentage points (interval +63.5
+/// to +66.1)."
 std::string best_text(const SweepResult& found, std::size_t q) {
   if (const std::string_view topic = required_otherwise(found, q); !topic.empty()) return no_best_text(found, q, topic);
   const std::optional<std::size_t> best = best_design(found, q);
@@ -174,12 +175,13 @@ std::string best_text(const SweepResult& found, std::size_t q) {
                                  value_text(found, q, found.merit(q, *best)), *best == 0 ? ", the first design" : "",
                                  near_best_clause(found, q));
   if (*best == 0) return text;
-  text += fmt::format(" At {} it is {} ({:+.3g}{}", design_name(found, 0), value_text(found, q, found.merit(q, 0)),
-                      found.change(q, *best), unit_of_change(found, q));
+  text += fmt::format(" At {}, the first design, it is {}; from there to the best it changes by {:+.3g}{}",
+                      design_name(found, 0), value_text(found, q, found.merit(q, 0)), found.change(q, *best),
+                      unit_of_change(found, q));
   if (!std::isnan(found.change_low(q, *best))) {
-    text += fmt::format(", interval {:+.3g} to {:+.3g}", found.change_low(q, *best), found.change_high(q, *best));
+    text += fmt::format(" (interval {:+.3g} to {:+.3g})", found.change_low(q, *best), found.change_high(q, *best));
   }
-  return text + ").";
+  return text + ".";
 }
 
 /// A note on what the intervals of changes from the best design do not take into account.

@@ -99,6 +99,17 @@ TEST_F(MeasuredErrors, KeepTheirRankCorrelation) {
   EXPECT_EQ(read_here(study_text(errors + block)).errors.correlated[0].correlation, found[0].correlation);
 }
 
+/// Like parts of several limbs take the same columns: a pattern names them, and each part has a block of its own.
+TEST_F(MeasuredErrors, OfPatternsAreCorrelatedByPart) {
+  folder_.write("parts.csv", kParts);
+  const std::string errors = "[errors.override]\n" + measured("\"delta_*\"", "hole") + measured("epsilon_1", "tilt");
+  const std::string part =
+      "[[errors.correlated]]\nfactors = [\"delta_2\", \"epsilon_1\"]\ncorrelation = \"as measured\"\n";
+  EXPECT_EQ(read_here(study_text(errors + part)).errors.correlated.size(), 1u);
+  expect_refused(study_text("correlated = ^\"as measured\"\n" + errors),
+                 {"delta_1 and delta_2, which take the same column 'hole' of parts.csv", "for each part"}, path());
+}
+
 TEST_F(MeasuredErrors, AreNotOpenedWhereErrorsAreGiven) {
   const std::string errors =
       "correlated = \"as measured\"\n[errors.override]\n" + measured("delta_1", "hole") + measured("epsilon_1", "tilt");
