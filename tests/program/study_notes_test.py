@@ -194,6 +194,10 @@ class StudyNotes(ProgramTest):
         swept = self.errors_of("sweep", "study.toml", "--set", "geometry.a=250,-250mm", "-o", "s.h5", "--quiet")
         self.assertEqual(swept.count("poesy: warning: with mechanism.geometry.a = -250 mm: a = -250 mm;"), 1, swept)
 
+    def test_a_load_without_stiffness(self):
+        self.write_rps(RPS.replace("}", ', load = { force = [0, 0, "-50 N"] } }', 1))
+        self.assertIn("the load has no effect, because no joint, link or limb has stiffness", self.errors_of("check", "study.toml"))
+
     def test_geometry_like_the_files_or_zero(self):
         for given in ("300 mm", "26 mm"):
             self.write_rps(RPS.replace("}", f', geometry = {{ a = "{given}" }} }}', 1))
