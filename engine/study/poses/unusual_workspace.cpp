@@ -65,14 +65,14 @@ std::string full_turn_clause(std::span<const Range> box, const ModelDescription&
   return {};
 }
 
-/// A clause that names the first coordinate that has a range, but a far smaller one than in the mechanism's workspace;
-/// empty if there is none. A coordinate that is held has no range.
+/// A clause that names the first coordinate whose range is far smaller than in the mechanism's workspace; empty if
+/// there is none.
 std::string tiny_clause(std::span<const Range> box, const ModelDescription& model) {
   constexpr double kTiny = 0.01;  // as a share of the mechanism's range
   for (std::size_t c = 0; c < box.size(); ++c) {
     const Range own = own_range(model, c);
     const double length = box[c].upper - box[c].lower;
-    if (length <= 0.0 || length >= kTiny * (own.upper - own.lower)) continue;
+    if (length >= kTiny * (own.upper - own.lower)) continue;
     return both_ranges(box, model, c) + "; that is less than a hundredth of it";
   }
   return {};

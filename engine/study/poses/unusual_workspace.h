@@ -17,7 +17,7 @@ std::string apart_clause(std::span<const Range> box, const ModelDescription& mod
 /// - in one coordinate, less than half of the box is in the mechanism's workspace, and more than half of the selected
 ///   poses are outside it; a smaller change of the workspace is often intended;
 /// - the box has an angle beyond +-360 deg, although the mechanism's workspace has none;
-/// - in one coordinate, the range of the box is less than a hundredth of the mechanism's, but not zero.
+/// - in one coordinate, the range of the box is less than a hundredth of the mechanism's.
 ///
 /// Empty if nothing looks wrong, or if the selection has no box. poses: the selected poses; empty if they are not
 /// known, and the second check is then left out.
