@@ -173,7 +173,7 @@ class Sweep(ProgramTest):
         self.succeeds("report", "sweep.h5", "-o", "sweep.html")
         page = (self.folder / "sweep.html").read_text()
         self.assertRegex(page, r"The yield is largest at l_A = [0-9.]+ mm: [0-9.]+ %; "
-                               rf"not told apart from it: {near[0]} mm\. At l_A = 80 mm ")
+                               rf"not told apart from it: {near[0]} mm\. At l_A = 80 mm, the first design, it is ")
         self.assertIn("To tell the designs apart that are near the best, take more samples.", page)
         self.assertIn("; all others are told apart from it.", self.page_of("geometry.l_A=60,70,80 mm"))
 
