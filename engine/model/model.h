@@ -353,8 +353,9 @@ class Model {
   /// model offers no picture.
   virtual std::optional<Sketch> sketch(std::span<const double> /*pose*/) const { return std::nullopt; }
 
-  /// Properties of the geometry that are possible but unusual, so that they may be mistakes. Each is a clause for a
-  /// message, such as "the platform (l_A = 800 mm) is larger than the base (l_B = 200 mm)". None by default.
+  /// Properties of the geometry or the load that are possible but unusual, so that they may be mistakes. Each is a
+  /// clause for a message, such as "the platform (l_A = 800 mm) is larger than the base (l_B = 200 mm)". None by
+  /// default.
   virtual std::vector<std::string> unusual_geometry() const { return {}; }
 
   /// Properties of the errors and of the drawing's zones that are possible but unusual, as clauses like those of
