@@ -210,9 +210,9 @@ void trial_read(const std::string& path, const std::function<void()>& read, unsi
   if (!said) ::kill(child, SIGKILL);
   const int status = status_of(child);
   if (!said) {
-    throw FileError(path,
-                    fmt::format("cannot be read within {} s: it is damaged, or the machine or its disk is busy", seconds),
-                    "try again, or take another copy");
+    throw FileError(
+        path, fmt::format("cannot be read within {} s: it is damaged, or the machine or its disk is busy", seconds),
+        "try again, or take another copy");
   }
   if (*said == kEndedWell) return;
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) {

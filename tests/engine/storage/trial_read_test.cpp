@@ -112,9 +112,10 @@ TEST_F(TrialRead, EndsWhatWaitsForEver) {
   };
   const std::string found = message(wait, 1);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  EXPECT_EQ(found, path_ +
-                       ": cannot be read within 1 s: it is damaged, or the machine or its disk is busy; try again, or take "
-                       "another copy");
+  EXPECT_EQ(found,
+            path_ +
+                ": cannot be read within 1 s: it is damaged, or the machine or its disk is busy; try again, or take "
+                "another copy");
   EXPECT_GE(took.count(), 1.0);
   EXPECT_LT(took.count(), 20.0);
   EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
