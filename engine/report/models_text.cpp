@@ -14,15 +14,13 @@ std::string chart_text(const PoseChart& chart) {
   return text;
 }
 
-/// The unit of a coordinate's range: that of tables; for an angle rad, if the ends have fewer digits in it than in deg.
-const Unit& range_unit(Dimension dimension, double lower, double upper) {
-  const auto characters = [&](const Unit& unit) {
-    return fmt::format("{:.6g}{:.6g}", lower / unit.si, upper / unit.si).size();
-  };
-  const Unit& usual = display_unit(dimension);
-  if (dimension != Dimension::angle) return usual;
-  const Unit& radian = *find_unit("rad");
-  return characters(radian) < characters(usual) ? radian : usual;
+/// A section on where errors are that the mechanism's file describes in its own words; empty if there are none.
+std::string places_text(const ModelDescription& model) {
+  std::string text;
+  for (const Factor& factor : model.factors) {
+    if (!factor.place.empty()) text += fmt::format("  {:<16} {}\n", factor.name, factor.place);
+  }
+  return text.empty() ? text : "\nwhere these errors are, and their directions\n" + text;
 }
 
 std::string curve_text(const NamedCurve& curve, const ModelDescription& model) {
@@ -89,7 +87,8 @@ std::string model_text(const CatalogEntry& entry) {
   text += "\npose coordinates and default workspace\n";
   for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
     const PoseCoordinate& coordinate = model.pose_coordinates[c];
-    const Unit& unit = range_unit(coordinate.dimension, model.pose_lower[c], model.pose_upper[c]);
+    const Unit& unit =
+        coordinate.dimension == Dimension::angle ? *find_unit("rad") : display_unit(coordinate.dimension);
     text += fmt::format("  {:<16} {:>8.6g} to {:<8.6g} {:<4} {}\n", coordinate.name, model.pose_lower[c] / unit.si,
                         model.pose_upper[c] / unit.si, unit.name, coordinate.description);
   }
@@ -105,9 +104,9 @@ std::string model_text(const CatalogEntry& entry) {
   for (const SourceSet& source : model.sources) text += fmt::format("  {:<16} {}\n", source.name, source.set);
   text += "\nerror factors\n";
   for (const Factor& factor : model.factors) {
-    text += fmt::format("  {:<16} {:>8} {}{}\n", factor.name, si_unit(factor.dimension), factor.description,
-                        factor.place.empty() ? "" : "; " + factor.place);
+    text += fmt::format("  {:<16} {:>8} {}\n", factor.name, si_unit(factor.dimension), factor.description);
   }
+  text += places_text(model);
   text += responses_text(model, entry.other_metric != nullptr);
   for (const CatalogEntry* by = entry.other_metric.get(); by != nullptr; by = by->other_metric.get()) {
     text += responses_text(by->description, false);
