@@ -30,8 +30,8 @@ bool has_test(const CalibrationResult& found) {
   return found.converged != 0 && found.noise_is_known != 0 && found.sd_is_estimated == 0 && found.dof > 0;
 }
 
-/// Returns true if the residuals are far smaller than expected from the stated noise. With a prior, the test also counts
-/// the estimates, which are expected to be of the size of their tolerances.
+/// Returns true if the residuals are far smaller than expected from the stated noise. With a prior, the test also
+/// counts the estimates, which are expected to be of the size of their tolerances.
 bool is_noise_too_large(const CalibrationResult& found) { return has_test(found) && found.p > kTooQuiet; }
 
 std::string some(const CalibrationResult& found, const std::vector<std::size_t>& numbers) {
