@@ -266,9 +266,11 @@ TEST(MonteCarloTable, ShowsFirstWhatMakesTheLimitedResponse) {
   for (const std::vector<Cell>& row : tables[0].rows) shown.push_back(row[0].text + " " + row[1].text);
   EXPECT_EQ(shown, (std::vector<std::string>{"epsilon_1 70", "delta_3 12.5", "delta_1 10", "delta_2 5", "delta_4 -"}));
   EXPECT_EQ(tables[0].columns[4].name, "share_ratio");
-  EXPECT_EQ(tables[0].notes[1], "linear_deformation: 97.5 % of its scatter is linear in the errors");
+  EXPECT_EQ(tables[0].notes[1],
+            "last, whatever their effect, because shares of correlated errors are not known: delta_4");
+  EXPECT_EQ(tables[0].notes[2], "linear_deformation: 97.5 % of its scatter is linear in the errors");
   EXPECT_EQ(
-      tables[0].notes[2],
+      tables[0].notes[3],
       "ratio: 50 % of its scatter is linear in the errors; the rest belongs to no error alone, so these shares say "
       "little");
 }
@@ -278,10 +280,10 @@ TEST(MonteCarloTable, DoesNotTestItsLinearityToFirstOrder) {
   result.study_text = "[mechanism]\nfidelity = \"first-order\"\n";
   const std::vector<std::string> notes = monte_carlo_tables(result)[0].notes;
   EXPECT_EQ(
-      notes[1],
+      notes[2],
       "linear_deformation: solved to first order in the errors, so it is not tested whether its scatter is linear "
       "in them");
-  EXPECT_NE(notes[2].find("ratio: 50 % of its scatter is linear"), std::string::npos);
+  EXPECT_NE(notes[3].find("ratio: 50 % of its scatter is linear"), std::string::npos);
 }
 
 TEST(MonteCarloTable, StatesTheMeanThatIsInNoShare) {
@@ -290,8 +292,8 @@ TEST(MonteCarloTable, StatesTheMeanThatIsInNoShare) {
   yield.offset = {{2}, {25e-6, 0.5}};
   yield.offset_share = {{2}, {0.42, 0.0009}};
   const std::vector<std::string> notes = monte_carlo_tables(result)[0].notes;
-  ASSERT_EQ(notes.size(), 4U);  // no note on the second response, whose mean is negligible
-  EXPECT_EQ(notes[2],
+  ASSERT_EQ(notes.size(), 5U);  // no note on the second response, whose mean is negligible
+  EXPECT_EQ(notes[3],
             "linear_deformation: not in these shares is its mean over the machines, 0.025 mm as a root mean square "
             "over the poses: 42 % of the whole mean square. Background and means of all errors make it together, with "
             "their signs; tighter tolerances leave it as it is");
