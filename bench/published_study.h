@@ -26,7 +26,7 @@ inline Study published_study(std::size_t poses, std::size_t samples) {
   for (const Factor& factor : model.factors) {
     study.errors.by_factor.push_back(Distribution::normal(factor.dimension == Dimension::length ? 1e-3 : degree));
   }
-  study.analysis.kind = &kSensitivityStudy;
+  study.analysis.kind = &sensitivity::kStudy;
   study.analysis.factors = model.find_set("deforming")->factors;
   study.analysis.samples = samples;
   study.analysis.background = Background{model.find_set("benign")->factors, 1e-3, degree};

@@ -92,7 +92,7 @@ void measure_both(Team& team, std::size_t units_per_cell) {
     const Plan plan(study, poses);
     const std::size_t responses = model->description().responses.size();
     const CellUnit unit{{std::vector(responses, Moments::of(numbers())), counts(), {}}, {}};
-    SensitivityCollector collect(plan, responses, study.analysis.conf_level);
+    sensitivity::Collector collect(plan, responses, study.analysis.conf_level);
     measure(
         "sensitivity", plan, unit, team, [&](const WorkUnit& of, const CellUnit& found) { collect.add(of, found); },
         [&](Archive& archive, CellUnit& one) {
@@ -101,12 +101,12 @@ void measure_both(Team& team, std::size_t units_per_cell) {
         });
   }
   // Many units at few poses, because in a long study the work that is done once for each pose is negligible.
-  study.analysis.kind = &kMonteCarloStudy;
+  study.analysis.kind = &monte_carlo::kStudy;
   study.analysis.samples *= kUnitsPerPose;
   const Plan plan(study, bench::every(kEveryPose, poses));
   const ResponseUnit response{Moments::of(numbers()), NumberBlock(numbers())};
   const PoseUnit unit{std::vector(kResponsesOfMonteCarlo, response), counts(), {}, {}};
-  MonteCarloCollector collect(plan, kResponsesOfMonteCarlo, study.analysis);
+  monte_carlo::Collector collect(plan, kResponsesOfMonteCarlo, study.analysis);
   measure(
       "monte-carlo", plan, unit, team, [&](const WorkUnit& of, const PoseUnit& found) { collect.add(of, found); },
       [&](Archive& archive, PoseUnit& one) {

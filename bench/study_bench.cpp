@@ -41,7 +41,7 @@ void run(benchmark::State& state, const Solver& solver) {
   SolveCounts counts;
   for (auto _ : state) {
     const Model& solved = is_reference ? static_cast<const Model&>(reference) : *model;
-    counts = run_sensitivity(plan, solved, 0.95, options)->total();
+    counts = sensitivity::run_sensitivity(plan, solved, 0.95, options)->total();
   }
   const auto solves = static_cast<double>(plan.solves());
   state.counters["solves/s"] = benchmark::Counter(solves, benchmark::Counter::kIsIterationInvariantRate);

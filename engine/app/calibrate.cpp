@@ -160,8 +160,8 @@ Dimension typed_dimension(const file::Value& value, const ControllerNumber& numb
                    "write an expression of a length, an angle or a number");
 }
 
-std::vector<TypedNumber> typed_numbers(const Study& study) {
-  std::vector<TypedNumber> list;
+std::vector<calibration::TypedNumber> typed_numbers(const Study& study) {
+  std::vector<calibration::TypedNumber> list;
   if (study.analysis.calibration->controller.empty()) return list;
   const std::vector<GeometryParameter> parameters = names_in_expressions(study);
   for (const ControllerNumber& number : study.analysis.calibration->controller) {
@@ -203,7 +203,7 @@ int calibrate_machine(const CalibrateOptions& options) {
   for (const std::string& of_box : workspace_doubts(study, predicted.poses)) say(Message::warning, of_box);
   const auto& asked = study.analysis.calibration->candidates;
   const auto candidates = asked ? selected(*asked, options.study, *model) : std::nullopt;
-  const std::vector<TypedNumber> typed = typed_numbers(study);
+  const std::vector<calibration::TypedNumber> typed = typed_numbers(study);
   const std::string doubt = bare_measurement_text(options.measured, file, study);
   if (!doubt.empty()) say(Message::warning, doubt);
   std::string path;
@@ -215,8 +215,9 @@ int calibrate_machine(const CalibrateOptions& options) {
   const std::size_t threads = resolved_threads(options.threads);
   start_threads(threads);
   const auto start = std::chrono::steady_clock::now();
-  Calibrated made = calibrate({study, *model, options.measured, file, measured.poses, predicted.poses,
-                               candidates ? candidates->poses : predicted.poses, typed, threads});
+  calibration::Calibrated made =
+      calibration::calibrate({study, *model, options.measured, file, measured.poses, predicted.poses,
+                              candidates ? candidates->poses : predicted.poses, typed, threads});
   if (made.result.estimate.empty()) {
     return complain(options.measured +
                         ": a machine on the way of the fit was not solved; look at the units of its columns, of which "
@@ -234,19 +235,20 @@ int calibrate_machine(const CalibrateOptions& options) {
   for (const std::string& warning : made.warnings) say(Message::warning, warning);
   const bool converged = made.result.converged != 0;
   if (converged) {
-    for (const std::string& warning : calibration_warnings(made.result)) say(Message::warning, warning);
+    for (const std::string& warning : calibration::calibration_warnings(made.result)) say(Message::warning, warning);
   }
   StoredResult result = described(study, *model, predicted);
-  result.kind = kCalibrationKind.study.name;
+  result.kind = calibration::kKind.study.name;
   result.found = std::move(made.result);
-  print(text_of(kCalibrationReport.tables(result, {}), output_width()));
+  print(text_of(calibration::kReport.tables(result, {}), output_width()));
   if (!path.empty()) {
-    write_result(path, kCalibrationKind.study.name, kCalibrationFile, study, predicted, result.found,
+    write_result(path, calibration::kKind.study.name, calibration::kFile, study, predicted, result.found,
                  run_facts(seconds_since(start), threads, made.solves));
   }
   if (converged) return kDone;
-  return complain(fmt::format("{}: {}; {}", options.measured, kNotConverged, kNotConvergedRemedy),
-                  kTooManyNotConverged);
+  return complain(
+      fmt::format("{}: {}; {}", options.measured, calibration::kNotConverged, calibration::kNotConvergedRemedy),
+      kTooManyNotConverged);
 }
 
 }  // namespace

@@ -165,18 +165,18 @@ int solve(const EvaluateOptions& options, const Evaluated& all, const std::strin
     result->verdicts = judge_rows(limits, *result, pairing, study.not_converged);
     within = rows_within(limits, *result, pairing, study.not_converged);
   }
-  Evaluation found = evaluation(*std::move(result), errors, pairing, model.description());
+  evaluate::Evaluation found = evaluate::evaluation(*std::move(result), errors, pairing, model.description());
   found.within_limits = std::move(within);
   StoredResult shown = described(study, model, poses);
   shown.verdicts = found.solves.verdicts;
-  shown.row_names = row_names(errors.labels, pairing, errors.rows);
+  shown.row_names = evaluate::row_names(errors.labels, pairing, errors.rows);
   shown.headline = chosen_or_all({}, shown.responses.size());
   if (!path.empty()) {
-    write_evaluation(path, study, poses, errors.factors, found, run_facts(seconds, threads, total.total()));
+    evaluate::write_evaluation(path, study, poses, errors.factors, found, run_facts(seconds, threads, total.total()));
   }
   shown.found = std::move(found);
   print(fmt::format("{} solves, {}\n\n{}", total.total(), unsolved_in_short(total),
-                    text_of(evaluation_table(shown), output_width())));
+                    text_of(evaluate::evaluation_table(shown), output_width())));
   if (path.empty()) {
     return judge(study, total, shown, options.study,
                  {"-o RESULT.h5 keeps the result", "run it again with -o RESULT.h5 to see which failed"});

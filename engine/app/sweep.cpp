@@ -116,22 +116,22 @@ class DesignDoubts {
 
 /// Makes the design with these values: its study and its poses. Adds to `doubts` what looks like a mistake in the
 /// design (all_doubts()). None if the user stopped the search for poses.
-std::optional<SweptDesign> design_of(const SweepOptions& options, const std::vector<GivenKey>& given,
-                                     const std::atomic<bool>& stop, DesignDoubts& doubts) {
+std::optional<sweep::SweptDesign> design_of(const SweepOptions& options, const std::vector<GivenKey>& given,
+                                            const std::atomic<bool>& stop, DesignDoubts& doubts) {
   Study study = study_with(options, given);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   auto poses = naming(given, [&] { return find_poses(study, *model, {.quiet = options.quiet, .stop = &stop}); });
   if (!poses) return std::nullopt;
   doubts.add(given, all_doubts(study, *model, *poses));
-  return SweptDesign{given, std::move(study), *std::move(poses)};
+  return sweep::SweptDesign{given, std::move(study), *std::move(poses)};
 }
 
 /// Makes all designs of a grid of values. Adds what looks like a mistake in a design to `doubts`. None if the user
 /// stopped the search for poses.
-std::optional<std::vector<SweptDesign>> designs_of(const SweepOptions& options,
-                                                   std::span<const std::vector<GivenKey>> grid,
-                                                   const std::atomic<bool>& stop, DesignDoubts& doubts) {
-  std::vector<SweptDesign> designs;
+std::optional<std::vector<sweep::SweptDesign>> designs_of(const SweepOptions& options,
+                                                          std::span<const std::vector<GivenKey>> grid,
+                                                          const std::atomic<bool>& stop, DesignDoubts& doubts) {
+  std::vector<sweep::SweptDesign> designs;
   ProgressLine line(options.quiet);
   for (const std::vector<GivenKey>& given : grid) {
     if (stop) return std::nullopt;
@@ -139,20 +139,20 @@ std::optional<std::vector<SweptDesign>> designs_of(const SweepOptions& options,
       const std::string text = validation_line(designs.size(), grid.size());
       line.write([&] { return text; }, [&](std::size_t width) { return text.substr(0, width); });
     }
-    std::optional<SweptDesign> design = design_of(options, given, stop, doubts);
+    std::optional<sweep::SweptDesign> design = design_of(options, given, stop, doubts);
     if (!design) return std::nullopt;
     designs.push_back(*std::move(design));
   }
-  check_sweep(designs, options.study);
+  sweep::check_sweep(designs, options.study);
   return designs;
 }
 
 /// The identity of a sweep, by which its checkpoints are recognised: that of the first design, but with the studies and
 /// the poses of all designs.
-CheckpointIdentity identity_of(std::span<const SweptDesign> designs) {
+CheckpointIdentity identity_of(std::span<const sweep::SweptDesign> designs) {
   CheckpointIdentity all;
   std::string poses;
-  for (const SweptDesign& design : designs) {
+  for (const sweep::SweptDesign& design : designs) {
     const CheckpointIdentity own = poesy::identity_of(design.study, design.poses.poses);
     const std::string studies = all.study + own.study + "\n";
     if (poses.empty()) all = own;
@@ -163,31 +163,32 @@ CheckpointIdentity identity_of(std::span<const SweptDesign> designs) {
   return all;
 }
 
-double seconds_of(std::span<const SweptDesign> designs, std::size_t threads) {
-  const SweptDesign& first = designs.front();
+double seconds_of(std::span<const sweep::SweptDesign> designs, std::size_t threads) {
+  const sweep::SweptDesign& first = designs.front();
   const std::unique_ptr<Model> model = build_model(first.study.mechanism);
   return seconds_of_long_run(first.study, *model, first.poses.poses, threads, designs.size());
 }
 
 /// Runs all designs. If the run fails, also tells the user whether the checkpoints are kept.
-std::optional<SweepResult> run_with_progress(const SweepOptions& options, std::span<const SweptKey> keys,
-                                             std::span<const SweptDesign> designs, const std::string& path,
-                                             RunOptions run, ResumableRun& resumable) {
-  const auto act = [&]() -> std::optional<SweepResult> {
+std::optional<sweep::Result> run_with_progress(const SweepOptions& options, std::span<const sweep::SweptKey> keys,
+                                               std::span<const sweep::SweptDesign> designs, const std::string& path,
+                                               RunOptions run, ResumableRun& resumable) {
+  const auto act = [&]() -> std::optional<sweep::Result> {
     ProgressPrinter printer(options.quiet);
     run.progress = [&](const Progress& progress) {
       printer(progress);
       resumable.check_time();
     };
     const auto begin = [&](std::size_t d) { printer.begin_design(d + 1, designs.size()); };
-    std::optional<SweepResult> found = run_sweep(keys, designs, options.response, run, begin);
+    std::optional<sweep::Result> found = sweep::run_sweep(keys, designs, options.response, run, begin);
     if (!found) return std::nullopt;
     const SolveCounts solves = total_of(found->solves);
     const RunTime time = resumable.time();
     RunFacts facts = run_facts(time.wall, run.threads, solves.total() - solves.by_series());
     facts.by_series = solves.by_series();
     facts.checkpoint_seconds = time.checkpoints;
-    write_result(path, kSweepKind.study.name, kSweepFile, designs.front().study, designs.front().poses, *found, facts);
+    write_result(path, sweep::kKind.study.name, sweep::kFile, designs.front().study, designs.front().poses, *found,
+                 facts);
     print(fmt::format("{}: {} designs, {} in {:.2f} s on {} {}, {}\n", printable_line(path), designs.size(),
                       samples_text(facts), facts.wall_seconds, facts.threads, facts.threads == 1 ? "thread" : "threads",
                       unsolved_in_short(solves)));
@@ -197,7 +198,7 @@ std::optional<SweepResult> run_with_progress(const SweepOptions& options, std::s
     return found;
   };
   const auto too_little = [&] {
-    const SweptDesign& first = designs.front();
+    const sweep::SweptDesign& first = designs.front();
     const std::unique_ptr<Model> model = build_model(first.study.mechanism);
     return too_little_memory(path, "this sweep",
                              memory_text(outlook(first.study, *model, first.poses.poses).memory.peak()));
@@ -206,14 +207,16 @@ std::optional<SweepResult> run_with_progress(const SweepOptions& options, std::s
 }
 
 /// Prints the table of the designs, and returns the exit code. path: path of the result.
-int report(const SweepOptions& options, const SweptDesign& first, const SweepResult& found, const std::string& path) {
+int report(const SweepOptions& options, const sweep::SweptDesign& first, const sweep::Result& found,
+           const std::string& path) {
   StoredResult result = described(first.study, *build_model(first.study.mechanism), first.poses);
-  result.kind = kSweepKind.study.name;
+  result.kind = sweep::kKind.study.name;
   result.found = found;
-  print("\n" + text_of(kSweepReport.tables(result, {}), output_width()));
+  print("\n" + text_of(sweep::kReport.tables(result, {}), output_width()));
   std::vector<std::string> failed;
   for (std::size_t d = 0; d < found.designs(); ++d) {
-    if (share_not_converged(found.solves[d]) > first.study.max_not_converged) failed.push_back(design_name(found, d));
+    if (share_not_converged(found.solves[d]) > first.study.max_not_converged)
+      failed.push_back(sweep::design_name(found, d));
   }
   if (!failed.empty()) {
     return complain(fmt::format("{}: more samples did not converge than solver.max_not_converged allows in {} of {} "
@@ -235,7 +238,7 @@ int interrupted(const ResumableRun& resumable) {
 
 /// Throws InputError if a swept key is a parameter of the mechanism's geometry that lacks "geometry." or a unit. model:
 /// the study's mechanism.
-void check_geometry_key(const std::string& set, const SweptKey& swept, const ModelDescription& model) {
+void check_geometry_key(const std::string& set, const sweep::SweptKey& swept, const ModelDescription& model) {
   constexpr std::string_view kTable = "mechanism.geometry.";
   const bool is_whole = swept.key.starts_with(kTable);
   const std::string name = is_whole ? swept.key.substr(kTable.size()) : swept.key;
@@ -260,7 +263,7 @@ void check_geometry_key(const std::string& set, const SweptKey& swept, const Mod
 }
 
 /// Checks the swept keys that are parameters of the geometry (check_geometry_key()).
-void check_geometry_keys(const SweepOptions& options, std::span<const SweptKey> keys) {
+void check_geometry_keys(const SweepOptions& options, std::span<const sweep::SweptKey> keys) {
   std::optional<Study> study;
   try {
     study = read_study(options.study, registry(), StudyUse::run);
@@ -272,10 +275,10 @@ void check_geometry_keys(const SweepOptions& options, std::span<const SweptKey> 
 
 int sweep(const SweepOptions& options) {
   const std::atomic<bool>& stop = catch_interrupts();
-  std::vector<SweptKey> keys;
-  std::ranges::transform(options.set, std::back_inserter(keys), parse_swept);
+  std::vector<sweep::SweptKey> keys;
+  std::ranges::transform(options.set, std::back_inserter(keys), sweep::parse_swept);
   check_geometry_keys(options, keys);
-  const std::vector<std::vector<GivenKey>> grid = grid_of(keys);
+  const std::vector<std::vector<GivenKey>> grid = sweep::grid_of(keys);
   const std::string stem = std::filesystem::path(options.study).stem().string();
   const Study first = study_with(options, grid.front());
   const std::string path =

@@ -23,7 +23,7 @@ namespace poesy {
 
 /// The result of a study.
 struct StudyResult {
-  std::any found;  ///< the result, as the type that this kind of study defines, such as SensitivityResult
+  std::any found;  ///< the result, as the type that this kind of study defines, such as sensitivity::Result
   std::optional<LimitVerdicts> verdicts;  ///< verdicts on the limits that the study states; empty without limits
   std::vector<std::string> row_names;  ///< names of the rows of the study's table of errors; a verdict may name a row
   /// A study that confirms the result with machines that were not used to find it; none if RunKind::confirms is false.

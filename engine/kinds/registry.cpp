@@ -19,8 +19,8 @@
 namespace poesy {
 namespace {
 
-constexpr std::array kAll{&kSensitivityKind, &kIdentificationKind, &kEvaluateKind, &kMonteCarloKind,
-                          &kSobolKind,       &kAllocationKind,     &kCouplingKind};
+constexpr std::array kAll{&sensitivity::kKind, &identification::kKind, &evaluate::kKind, &monte_carlo::kKind,
+                          &sobol::kKind,       &allocation::kKind,     &coupling::kKind};
 
 /// The order of the keys of [analysis] in the reference of study files. Keys that are not listed here come last.
 constexpr std::array<std::string_view, 31> kKeys{
@@ -43,7 +43,7 @@ const StudyKinds& study_kinds() {
 }
 
 const Kind* find_kind(std::string_view name) {
-  for (const Kind* kind : {&kCalibrationKind, &kSweepKind}) {  // results have these kinds, but studies do not
+  for (const Kind* kind : {&calibration::kKind, &sweep::kKind}) {  // results have these kinds, but studies do not
     if (name == kind->study.name) return kind;
   }
   const auto* const found = std::ranges::find(kAll, name, [](const Kind* kind) { return kind->study.name; });

@@ -36,7 +36,7 @@ void write_sensitivity_seed(const std::string& path) {
   test::Example example;
   example.study.mechanism.entry = &catalog()[0];
   example.study.mechanism.compared = 1;
-  SensitivityResult result = example.sensitivity();
+  sensitivity::Result result = example.sensitivity();
   const auto& described = *catalog()[0].description.separation;
   const SeparationResult::Cells cells({2, test::Example::kPoses}, 0.25);
   result.separation = {.measure = described.measure,
@@ -57,7 +57,7 @@ void write_sensitivity_seed(const std::string& path) {
 void write_convergence_seed(const std::string& path) {
   test::Example example;
   example.study.analysis.adaptive = AdaptiveSamples{1000, 0.05};
-  SensitivityResult result = example.sensitivity();
+  sensitivity::Result result = example.sensitivity();
   ConvergenceResult& convergence = result.convergence.emplace();
   convergence.min = 1000;
   convergence.max = 3000;
@@ -81,17 +81,17 @@ void write_shard_seed(const std::string& path) {
 
 void write_cases_seed(const std::string& path) {
   test::Example example;
-  example.study.analysis.kind = &kEvaluateStudy;
-  std::vector<ErrorCase>& cases = asked_of<CaseOptions>(example.study.analysis).cases;
+  example.study.analysis.kind = &evaluate::kStudy;
+  std::vector<evaluate::ErrorCase>& cases = asked_of<evaluate::CaseOptions>(example.study.analysis).cases;
   cases = {{"fine", {1e-3, 2e-3, 3e-3}}, {"coarse", {4e-3, 5e-3, 6e-3}}, {"none", {0.0, 0.0, 0.0}}};
-  const Evaluation result =
-      evaluation_of_cases(example.solves(cases.size()), cases, example.study.model(), NotConverged::include);
+  const evaluate::Evaluation result =
+      evaluate::evaluation_of_cases(example.solves(cases.size()), cases, example.study.model(), NotConverged::include);
   write_result(path, example.study, example.poses, result, example.facts);
 }
 
 void write_identification_seed(const std::string& path) {
   test::Example example;
-  IdentificationResult result = example.identification();
+  identification::Result result = example.identification();
   result.single_max(1, 1) = 1.0;
   write_result(path, example.study, example.poses, result, example.facts);
 }

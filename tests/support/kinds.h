@@ -14,7 +14,7 @@ using KindOfStudy = const StudyKind*;
 
 /// Sets the quantiles of a Monte Carlo study. Does nothing for other kinds.
 inline void set_quantiles(Analysis& analysis, const std::vector<double>& quantiles) {
-  if (analysis.kind == &kMonteCarloStudy) asked_of<MonteCarloOptions>(analysis).quantiles = quantiles;
+  if (analysis.kind == &monte_carlo::kStudy) asked_of<monte_carlo::Options>(analysis).quantiles = quantiles;
 }
 
 }  // namespace poesy::test

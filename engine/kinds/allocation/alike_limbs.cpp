@@ -9,7 +9,7 @@
 
 #include "engine/model/model.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 /// For each limb (numbers from 1), the types of its joints that are not fixed, in their order: "UPR". A limb
@@ -63,4 +63,4 @@ std::string unlike_limbs_text(std::span<const std::size_t> limbs, const Study& s
       first, joints[first], *other, joints[*other]);
 }
 
-}  // namespace poesy
+}  // namespace poesy::allocation

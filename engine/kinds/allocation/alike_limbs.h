@@ -7,7 +7,7 @@
 #include "engine/study/study.h"
 
 /// Compares the joints of limbs, because limbs with different joints are not made alike.
-namespace poesy {
+namespace poesy::allocation {
 
 /// A line of a study template, commented out, that shows the key identical_limbs with two limbs as an example: the
 /// first two limbs that have errors and the same joints. Empty if there are no such limbs.
@@ -17,4 +17,4 @@ std::string shown_identical_limbs(const Study& study);
 /// has no joints to compare. limbs: numbers, counted from 1.
 std::string unlike_limbs_text(std::span<const std::size_t> limbs, const Study& study);
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -12,7 +12,7 @@
 #include "engine/base/ratio.h"
 #include "engine/base/text.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 using Law = StatedCost::Law;
@@ -156,4 +156,4 @@ std::string cost_text(const StatedCost& cost, Dimension dimension) {
   return fmt::format("{{ {} }}", fmt::join(keys, ", "));
 }
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -6,7 +6,7 @@
 #include "engine/study/study_kind.h"
 
 /// Reads and writes, in study files, the cost of a part as a function of its tolerance.
-namespace poesy {
+namespace poesy::allocation {
 
 /// The keys of a cost in study files. They are the same for the cost of a part and the cost of a process.
 StudyTable cost_table();
@@ -18,4 +18,4 @@ StatedCost read_cost(const StudyValue& value, Dimension dimension);
 /// The cost as an inline table of TOML, which reads back as the same cost. Precondition: the cost has a law.
 std::string cost_text(const StatedCost& cost, Dimension dimension);
 
-}  // namespace poesy
+}  // namespace poesy::allocation

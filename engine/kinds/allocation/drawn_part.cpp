@@ -2,7 +2,7 @@
 
 #include "engine/base/contract.h"
 
-namespace poesy {
+namespace poesy::allocation {
 
 double sigma_per_tolerance(const Spread& spread) {
   POESY_EXPECTS(spread.sigmas > 0.0 && spread.shift >= 0.0 && spread.shift < 1.0);
@@ -33,4 +33,4 @@ std::vector<double> part_effects(std::span<const double> error_effects, std::siz
   return effects;
 }
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -5,7 +5,7 @@
 #include <vector>
 
 /// How the tolerance T on a drawing determines the distribution of the errors that share it.
-namespace poesy {
+namespace poesy::allocation {
 
 /// The distribution of a part's errors within +-T. The mean may be offset by a share of T, and `sigmas` standard
 /// deviations use the rest: T = shift T + sigmas sigma. So sigmas is 3 Cpk, by the definition of Cpk.
@@ -42,4 +42,4 @@ struct DrawnPart {
 std::vector<double> part_effects(std::span<const double> error_effects, std::size_t errors,
                                  std::span<const DrawnPart> parts);
 
-}  // namespace poesy
+}  // namespace poesy::allocation

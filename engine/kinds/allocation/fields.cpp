@@ -12,10 +12,8 @@
 #include "engine/result/result_parts.h"
 #include "engine/stats/proportion.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
-
-using Result = AllocationResult;
 
 const Axes kByStage{"stage"};
 constexpr const char* kPartUnit = "SI: part unit, see /allocation/unit";
@@ -450,6 +448,6 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
 
 }  // namespace
 
-constinit const FileKind kAllocationFile{.write = write, .read = read, .append_tables = append_tables};
+constinit const FileKind kFile{.write = write, .read = read, .append_tables = append_tables};
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -13,7 +13,7 @@
 #include "engine/report/display.h"
 #include "engine/report/drawn_errors.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 /// The distribution and the standard deviation of an error: "normal, sigma 0.02 mm".
@@ -60,7 +60,7 @@ std::string_view remedy_text(const std::vector<UnallocatedError>& errors) {
 
 std::vector<UnallocatedError> errors_in_no_part(const Study& study) {
   std::vector<UnallocatedError> errors;
-  const std::vector<AllocatedPart>& parts = asked_of<AllocationOptions>(study.analysis).parts;
+  const std::vector<AllocatedPart>& parts = asked_of<Options>(study.analysis).parts;
   for (const FactorIndex factor : study.analysis.factors) {
     const auto has = [&](const AllocatedPart& part) {
       return std::ranges::find(part.factors, factor) != part.factors.end();
@@ -115,4 +115,4 @@ Table in_no_part_table(const std::vector<UnallocatedError>& errors) {
   return table;
 }
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -9,7 +9,7 @@
 
 /// The errors of an allocation that vary but are in no part. The search does not choose their sizes. Search and
 /// certificate draw them with the sizes that the study states, so the certificate is valid only for these sizes.
-namespace poesy {
+namespace poesy::allocation {
 
 /// An error that varies and is in no part, with the distribution with which it is drawn.
 struct UnallocatedError {
@@ -30,4 +30,4 @@ std::string in_no_part_text(const std::vector<UnallocatedError>& errors, std::si
 /// A table with the size of each of these errors. Precondition: there are such errors.
 Table in_no_part_table(const std::vector<UnallocatedError>& errors);
 
-}  // namespace poesy
+}  // namespace poesy::allocation

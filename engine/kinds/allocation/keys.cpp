@@ -22,12 +22,11 @@
 #include "engine/study/limit_keys.h"
 #include "engine/study/study_kind.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
-constexpr std::array<std::string_view, 12> kAllocationKeys{"factors", "limits",     "yield",       "confidence",
-                                                           "samples", "aim",        "background",  "sigmas",
-                                                           "cpk",     "calibrated", "calibration", "parts"};
+constexpr std::array<std::string_view, 12> kKeys{"factors",    "limits", "yield", "confidence", "samples",     "aim",
+                                                 "background", "sigmas", "cpk",   "calibrated", "calibration", "parts"};
 
 /// The names of the aims (Aim) in study files, in the order of the enumeration.
 constexpr std::array<std::string_view, 4> kAimNames{"least-cost", "equal-effect", "equal-tolerance", "common-factor"};
@@ -51,7 +50,7 @@ KeyValue<Study> samples_value() { return whole_at(2, kMostSolves, &Study::analys
 void read_samples(const StudyValue& value, Study& study, const Reading&) {
   if (value.is_section()) {
     value.fail("is a table, but a certificate needs a number of machines that is fixed before",
-               fmt::format("write a number, e.g. samples = {}", usual_samples(AllocationOptions().yield)));
+               fmt::format("write a number, e.g. samples = {}", usual_samples(Options().yield)));
   }
   samples_value().read(value, study);
 }
@@ -136,7 +135,7 @@ void doubt_ends(std::span<const AllocatedPart> parts, Study& study) {
 
 void read_parts(const StudyValue& value, Study& study, const Reading& reading) {
   const auto usual = read_sigmas(reading.root.section("analysis"));
-  std::vector<AllocatedPart>& parts = asked_of<AllocationOptions>(study.analysis).parts;
+  std::vector<AllocatedPart>& parts = asked_of<Options>(study.analysis).parts;
   for (const StudyValue& one : value.list()) {
     const StudySection block = one.section();
     std::vector<AllocatedPart> more = read_part_block(block, study, usual, names(parts));
@@ -151,7 +150,7 @@ void read_parts(const StudyValue& value, Study& study, const Reading& reading) {
 
 std::string parts_lines(const Study& study) {
   std::string text;
-  for (const AllocatedPart& part : asked_of<AllocationOptions>(study.analysis).parts) {
+  for (const AllocatedPart& part : asked_of<Options>(study.analysis).parts) {
     text += part_text(part, study.model());
   }
   return text;
@@ -219,7 +218,7 @@ StudyRow samples_row() {
   return {.name = "samples",
           .value = samples_value(),
           .usual = "400 expected rejects, 400 / (1 - yield) in whole thousands, from 2000 to 20 million",
-          .example = std::to_string(usual_samples(AllocationOptions().yield)),
+          .example = std::to_string(usual_samples(Options().yield)),
           .meaning = "Machines with which tolerances are found, and as many fresh ones for the certificate.",
           .reader = read_samples,
           .commented = true};
@@ -244,7 +243,7 @@ StudyRow aim_row() {
             "[errors]"},
            {Aim::common_factor,
             "the standard deviations of [errors], all times the largest factor that the limits allow"}},
-          &AllocationOptions::aim)),
+          &Options::aim)),
       .usual = "\"least-cost\" where a part has a cost, else \"equal-effect\"",
       .example = "\"least-cost\"",
       .meaning = "Which of the tolerances that keep the limits.",
@@ -255,10 +254,10 @@ std::vector<StudyRow> allocation_rows() {
   return {samples_row(),
           limits_row(),
           StudyRow{.name = "yield",
-                   .value = asked_value(number_at(between_0_and_1("0.9973"), &AllocationOptions::yield)),
+                   .value = asked_value(number_at(between_0_and_1("0.9973"), &Options::yield)),
                    .meaning = "The share of the machines that must be within all limits at every pose."},
           StudyRow{.name = "confidence",
-                   .value = asked_value(number_at(between_0_and_1("0.95"), &AllocationOptions::confidence)),
+                   .value = asked_value(number_at(between_0_and_1("0.95"), &Options::confidence)),
                    .meaning = "Confidence of the certificate that the yield is reached."},
           aim_row(),
           StudyRow{.name = "sigmas",
@@ -287,7 +286,7 @@ std::vector<StudyRow> allocation_rows() {
 
 /// Refuses a number of machines that is too small for a certificate even if all machines are good.
 void check_samples(const Study& study, const StudySection& section) {
-  const AllocationOptions& asked = asked_of<AllocationOptions>(study.analysis);
+  const Options& asked = asked_of<Options>(study.analysis);
   const std::uint64_t needed = trials_without_failure(asked.yield, asked.confidence);
   if (study.analysis.samples >= needed) return;
   const std::string problem =
@@ -322,7 +321,7 @@ void check_limits(const Study& study, const StudySection& section) {
 /// Refuses an aim that cannot choose the tolerance of an orientation, because the effect of an orientation on a limit
 /// may be negative.
 void check_aim_of_zones(const Study& study, const StudySection& section) {
-  const AllocationOptions& asked = asked_of<AllocationOptions>(study.analysis);
+  const Options& asked = asked_of<Options>(study.analysis);
   if (asked.aim != Aim::equal_effect && asked.aim != Aim::equal_tolerance) return;
   const std::vector<Within> pairs = zone_pairs(asked.parts, study.model());
   if (pairs.empty()) return;
@@ -337,7 +336,7 @@ void check_aim_of_zones(const Study& study, const StudySection& section) {
 
 void complete_allocation(Study& study, const Reading& reading) {
   const StudySection section = reading.root.section("analysis");
-  AllocationOptions& asked = asked_of<AllocationOptions>(study.analysis);
+  Options& asked = asked_of<Options>(study.analysis);
   if (!section.find("samples")) study.analysis.samples = usual_samples(asked.yield);
   check_samples(study, section);
   check_limits(study, section);
@@ -375,7 +374,7 @@ std::string note_on_parts(const Study& study) {
 }
 
 AtPose allocation_at_pose(const Study& study) {
-  const auto parts = static_cast<double>(asked_of<AllocationOptions>(study.analysis).parts.size());
+  const auto parts = static_cast<double>(asked_of<Options>(study.analysis).parts.size());
   return {parts, "parts", static_cast<double>(study.analysis.samples), "samples"};
 }
 
@@ -383,20 +382,20 @@ AtPose allocation_at_pose(const Study& study) {
 
 std::string_view name(Aim aim) { return kAimNames.at(static_cast<std::size_t>(aim)); }
 
-const StudyKind kAllocationStudy{.name = "allocation",
-                                 .asks = "which tolerances keep limits, and at what cost",
-                                 .keys = kAllocationKeys,
-                                 .varies = Varies::together,
-                                 .draws = Draws::per_machine,
-                                 .draws_machines_anew = true,
-                                 .finds_sizes = true,
-                                 .decides_by_samples = true,
-                                 .rows = allocation_rows,
-                                 .tables = part_tables,
-                                 .no_template = no_template,
-                                 .complete = complete_allocation,
-                                 .check_errors = check_sizes,
-                                 .note = note_on_parts,
-                                 .at_pose = allocation_at_pose};
+const StudyKind kStudy{.name = "allocation",
+                       .asks = "which tolerances keep limits, and at what cost",
+                       .keys = kKeys,
+                       .varies = Varies::together,
+                       .draws = Draws::per_machine,
+                       .draws_machines_anew = true,
+                       .finds_sizes = true,
+                       .decides_by_samples = true,
+                       .rows = allocation_rows,
+                       .tables = part_tables,
+                       .no_template = no_template,
+                       .complete = complete_allocation,
+                       .check_errors = check_sizes,
+                       .note = note_on_parts,
+                       .at_pose = allocation_at_pose};
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -2,16 +2,16 @@
 
 #include "engine/kinds/kind.h"
 
-namespace poesy {
+namespace poesy::allocation {
 
 /// How results of studies of kind `allocation` are stored and reported. A study of this kind finds tolerances of parts
 /// with which the wanted share of machines keeps all limits.
 /// @{
-extern const FileKind kAllocationFile;
-extern const ReportKind kAllocationReport;
+extern const FileKind kFile;
+extern const ReportKind kReport;
 /// @}
 
 /// Runs studies of kind `allocation`, and describes their keys, result files and reports.
-extern const Kind kAllocationKind;
+extern const Kind kKind;
 
-}  // namespace poesy
+}  // namespace poesy::allocation

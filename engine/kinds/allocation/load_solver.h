@@ -16,7 +16,7 @@
 #include "engine/study/plan.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::allocation {
 
 /// The largest number of machines that one thread solves together at a pose.
 inline constexpr std::size_t kMachinesOfPiece = 200;
@@ -153,4 +153,4 @@ class LoadSolver : protected UnitSolver {
   std::vector<double> at_poses_;
 };
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -9,7 +9,7 @@
 #include "engine/run/unit_fold.h"
 #include "engine/stats/sums.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 /// The machines that a run solves.
@@ -139,4 +139,4 @@ std::optional<MachineLoads> machine_loads(const Plan& plan, const Model& model, 
   return fold_units(job, options);
 }
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -13,7 +13,7 @@
 #include "engine/study/plan.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::allocation {
 
 /// The loads of machines at given tolerances. The load of a machine is the largest ratio of a response to its limit,
 /// both measured from the centre of the limit (RelativeLimits::load()), over all limits and poses. A machine is good if
@@ -40,4 +40,4 @@ std::optional<MachineLoads> machine_loads(const Plan& plan, const Model& model, 
                                           const MachineCalibration* calibration = nullptr);
 /// @}
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -14,7 +14,7 @@
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/unit_fold.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 /// The number of values of an error at which the mechanism is solved (nodes): mu - sigma, c and mu + sigma, with its
@@ -409,4 +409,4 @@ std::uint64_t mean_square_solves(const Plan& plan, std::size_t draws) {
   return kNodes * plan.factors().size() * (1 + draws) * plan.poses().size();
 }
 
-}  // namespace poesy
+}  // namespace poesy::allocation

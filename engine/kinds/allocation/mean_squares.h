@@ -11,7 +11,7 @@
 #include "engine/study/plan.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::allocation {
 
 /// The mean squares of the limited responses about their centres (RelativeLimits), and their derivatives with respect
 /// to the variances of the errors. A row is a limit at a pose; the poses of the first limit come first.
@@ -53,4 +53,4 @@ std::optional<MeanSquares> mean_squares(const Plan& plan, const Model& model, st
 /// The number of solves that mean_squares() makes, without those for the measurement noise of a calibration.
 std::uint64_t mean_square_solves(const Plan& plan, std::size_t draws);
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -12,7 +12,7 @@
 #include "engine/base/name_pattern.h"
 #include "engine/base/text.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 const Factor& factor_of(const Study& study, FactorIndex factor) { return study.model().factors[factor.value]; }
@@ -239,4 +239,4 @@ std::vector<PartMembers> read_members(const StudySection& block, const Study& st
                   "write each = true besides, or leave it out");
 }
 
-}  // namespace poesy
+}  // namespace poesy::allocation

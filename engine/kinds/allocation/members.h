@@ -6,7 +6,7 @@
 #include "engine/study/study_kind.h"
 
 /// Reads which errors each block [[analysis.parts]] of a study file joins into parts.
-namespace poesy {
+namespace poesy::allocation {
 
 using PartMembers = std::vector<FactorIndex>;  ///< The errors of a part, which share one tolerance; at least one.
 
@@ -29,4 +29,4 @@ std::vector<PartMembers> read_members(const StudySection& block, const Study& st
 /// Whether the block states `each = true`, so that every error is a part unless identical limbs share it.
 bool is_each(const StudySection& block);
 
-}  // namespace poesy
+}  // namespace poesy::allocation

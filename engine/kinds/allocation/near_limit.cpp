@@ -5,7 +5,7 @@
 
 #include "engine/base/contract.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 /// The largest and the smallest half-width of the window. Machines outside the widest window are too far from the limit
@@ -82,4 +82,4 @@ double NearLimit::added_rejects(std::span<const double> coarser, std::span<const
   return scale_ * come;
 }
 
-}  // namespace poesy
+}  // namespace poesy::allocation

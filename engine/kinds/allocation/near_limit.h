@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace poesy {
+namespace poesy::allocation {
 
 /// The machines whose loads are near 1. They serve to estimate how many rejects a larger tolerance of a part adds. The
 /// load of a machine is the largest ratio of a response to its limit, over all limits and poses; above 1 the machine is
@@ -50,4 +50,4 @@ class NearLimit {
   double scale_ = 1.0;         ///< number of rejects divided by the sum of fractional rejects
 };
 
-}  // namespace poesy
+}  // namespace poesy::allocation

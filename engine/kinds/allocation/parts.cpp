@@ -14,7 +14,7 @@
 #include "engine/kinds/allocation/zone_blocks.h"
 #include "engine/study/table_file.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 using PartChoice = AllocatedPart::Choice;
@@ -531,4 +531,4 @@ Dimension dimension_of(const AllocatedPart& part, const ModelDescription& model)
   return model.factors[part.factors.front().value].dimension;
 }
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -6,11 +6,12 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/units.h"
 #include "engine/kinds/allocation/result.h"
 #include "engine/study/study_kind.h"
 
 /// Reads and writes the parts of a drawing, [[analysis.parts]], in study files.
-namespace poesy {
+namespace poesy::allocation {
 
 StudyTables part_tables();  ///< The keys of a part and of its cost and processes.
 
@@ -34,7 +35,9 @@ void check_part_sizes(const StudySection& block, const AllocatedPart& part, cons
 
 bool has_cost(const AllocatedPart& part);  ///< Whether the part, or one of its processes, has a cost.
 
+using poesy::dimension_of;
+
 /// The dimension of the part's errors.
 Dimension dimension_of(const AllocatedPart& part, const ModelDescription& model);
 
-}  // namespace poesy
+}  // namespace poesy::allocation

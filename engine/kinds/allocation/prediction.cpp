@@ -12,7 +12,7 @@
 #include "engine/kinds/confirming_study.h"
 #include "engine/kinds/what_if/what_if.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 /// The cost law of a part. If the part has processes, the law of the process that `point` chooses.
@@ -23,7 +23,7 @@ CostLaw law_of(const ToleranceProgramme& programme, const TolerancePoint& point,
 }
 
 /// The tolerance of a part in its display unit. Its name is "±" or, for a zone, the key of the zone.
-WhatIfSize size_of(const AllocationResult& found, std::size_t part) {
+WhatIfSize size_of(const Result& found, std::size_t part) {
   const Unit& unit = display_unit(dimension_of(found.part_unit(part)));
   const bool is_zone = found.has_zones() && !found.zone_key(part).empty();
   return {is_zone ? found.zone_key(part) : "\u00b1", found.tolerance(part) / unit.si, std::string(unit.name)};
@@ -31,8 +31,8 @@ WhatIfSize size_of(const AllocationResult& found, std::size_t part) {
 
 /// Adds a part to `errors`, a group of errors that one slider of the page scales: its errors, its name and tolerance,
 /// and its cost at each factor of the slider.
-void add_part(const AllocationResult& found, const ToleranceProgramme& programme, const TolerancePoint& point,
-              std::size_t part, SizedErrors& errors) {
+void add_part(const Result& found, const ToleranceProgramme& programme, const TolerancePoint& point, std::size_t part,
+              SizedErrors& errors) {
   for (const ErrorFactor& one : programme.weights(point, part).errors) {
     if (std::ranges::find(errors.slots, one.error) == errors.slots.end()) errors.slots.push_back(one.error);
   }
@@ -48,7 +48,7 @@ void add_part(const AllocationResult& found, const ToleranceProgramme& programme
 
 /// The parts as groups of errors, one for each slider of the page. Location and orientation of a feature form one
 /// group, because they determine the same errors.
-std::vector<SizedErrors> sized_parts(const AllocationResult& found, const ToleranceProgramme& programme) {
+std::vector<SizedErrors> sized_parts(const Result& found, const ToleranceProgramme& programme) {
   const TolerancePoint point = programme.at_most(found.tolerance.all());
   std::vector<SizedErrors> list;
   for (std::size_t part = 0; part < programme.size(); ++part) {
@@ -63,7 +63,7 @@ std::vector<SizedErrors> sized_parts(const AllocationResult& found, const Tolera
 }
 
 /// [poses] The use of the limit that is used most at the pose.
-std::vector<double> pose_weights(const AllocationResult& found) {
+std::vector<double> pose_weights(const Result& found) {
   std::vector<double> weights(found.poses(), 0.0);
   for (std::size_t r = 0; r < found.limit_use.length<axis::Response>(); ++r) {
     for (std::size_t m = 0; m < weights.size(); ++m) weights[m] = std::max(weights[m], found.limit_use(r, m));
@@ -73,18 +73,18 @@ std::vector<double> pose_weights(const AllocationResult& found) {
 
 /// Whether the page can predict yields for this result. The study, which was read again from the result's text, must
 /// be an allocation without calibration, with as many errors, parts and poses as the result.
-bool fits(const ReportedResult& reported, const AllocationResult& found) {
+bool fits(const ReportedResult& reported, const Result& found) {
   const Study& study = *reported.study;
-  if (study.analysis.kind != &kAllocationStudy || study.analysis.calibration != nullptr) return false;
+  if (study.analysis.kind != &kStudy || study.analysis.calibration != nullptr) return false;
   if (study.analysis.factors.size() != reported.stored.factors.size()) return false;
-  return asked_of<AllocationOptions>(study.analysis).parts.size() == found.parts() &&
+  return asked_of<Options>(study.analysis).parts.size() == found.parts() &&
          found.poses() == reported.stored.poses.size();
 }
 
 }  // namespace
 
 void add_prediction(const ReportedResult& reported, Page& page) {
-  const AllocationResult& found = allocation_of(reported.stored);
+  const Result& found = allocation_of(reported.stored);
   if (found.parts() == 0 || found.poses() == 0 || !fits(reported, found)) return;
   const ToleranceProgramme programme(*reported.study, *reported.model);
   Study certificate = as_confirming_study(programme.at(found.tolerance.all()), "certificate");
@@ -103,4 +103,4 @@ void add_prediction(const ReportedResult& reported, Page& page) {
               "drawing", page);
 }
 
-}  // namespace poesy
+}  // namespace poesy::allocation

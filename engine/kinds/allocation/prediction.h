@@ -2,11 +2,11 @@
 
 #include "engine/report/html/parts.h"
 
-namespace poesy {
+namespace poesy::allocation {
 
 /// Adds to the page a section that predicts yield and cost with other tolerances of the parts. The predictions use the
 /// certificate's machines: fresh machines that were solved once after the search. Adds nothing if the result does
 /// not fit its study, if the study calibrates machines by measurements, or if what_if() predicts nothing.
 void add_prediction(const ReportedResult& reported, Page& page);
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -12,7 +12,7 @@
 #include "engine/kinds/allocation/zone_parts.h"
 #include "engine/optimise/max_tolerances.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -272,9 +272,7 @@ std::vector<ErrorFactor> ToleranceProgramme::growth(const TolerancePoint& point,
   return growth;
 }
 
-const std::vector<AllocatedPart>& ToleranceProgramme::parts() const {
-  return asked_of<AllocationOptions>(study_.analysis).parts;
-}
+const std::vector<AllocatedPart>& ToleranceProgramme::parts() const { return asked_of<Options>(study_.analysis).parts; }
 
 std::string ToleranceProgramme::chosen_name(std::size_t part, std::size_t process) const {
   const AllocatedPart& one = parts()[part];
@@ -458,7 +456,7 @@ ChoiceOfTolerances ToleranceProgramme::least(const ToleranceLimits& limits, cons
 }
 
 std::vector<double> ToleranceProgramme::proportions(const ToleranceLimits& limits) const {
-  const Aim aim = asked_of<AllocationOptions>(study_.analysis).aim;
+  const Aim aim = asked_of<Options>(study_.analysis).aim;
   if (aim == Aim::equal_effect) return equal_effect_proportions(limits);
   std::vector<double> list;
   for (std::size_t i = 0; i < size(); ++i) {
@@ -510,7 +508,7 @@ ChoiceOfTolerances ToleranceProgramme::largest(const ToleranceLimits& limits) co
 }
 
 ChoiceOfTolerances ToleranceProgramme::choose(const ToleranceLimits& limits, const TrustRegion& region) const {
-  return asked_of<AllocationOptions>(study_.analysis).aim == Aim::least_cost ? least(limits, region) : largest(limits);
+  return asked_of<Options>(study_.analysis).aim == Aim::least_cost ? least(limits, region) : largest(limits);
 }
 
 Study ToleranceProgramme::at(std::span<const double> tolerance) const {
@@ -540,4 +538,4 @@ Study ToleranceProgramme::at(std::span<const double> tolerance) const {
   return study;
 }
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -17,7 +17,7 @@
 #include "engine/optimise/tolerance_limits.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::allocation {
 
 /// Tolerances of all parts, and their cost.
 struct TolerancePoint {
@@ -137,4 +137,4 @@ class ToleranceProgramme {
   bool has_costs_ = false;
 };
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -8,7 +8,7 @@
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 /// Solves the mechanism with all varied errors at their centres (zero, or a stated mean).
@@ -89,4 +89,4 @@ double RelativeLimits::load_over_poses(std::size_t k, std::span<double> at_poses
   return *place;
 }
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -11,11 +11,13 @@
 #include "engine/study/plan.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::axis {
 
-namespace axis {
 using Limit = Axis<"limit">;  ///< Limits of a study.
-}  // namespace axis
+
+}  // namespace poesy::axis
+
+namespace poesy::allocation {
 
 /// The limits of a study as distances from a centre. For a limit with one or two ends, the centre is the response of
 /// the mechanism with the constant errors of the background and all varied errors at their own centres
@@ -59,4 +61,4 @@ class RelativeLimits {
   Array<double, axis::Limit, axis::Pose> centre_;
 };
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -15,10 +15,8 @@
 #include "engine/kinds/allocation/summary.h"
 #include "engine/report/display.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
-
-using Result = AllocationResult;
 
 SolveTally tally(const StoredResult& result) {
   const auto& solves = allocation_of(result).solves;
@@ -324,18 +322,18 @@ std::vector<Merit> merits(const StoredResult& result, std::string_view) {
 
 }  // namespace
 
-constinit const ReportKind kAllocationReport{.tally = tally,
-                                             .tables = allocation_tables,
-                                             .merits = merits,
-                                             .sorts = true,
-                                             .words = words,
-                                             .method = method,
-                                             .warn = warn,
-                                             .answer = answer,
-                                             .shown_cells = cells,
-                                             .page = add_page,
-                                             .solved_page = add_prediction,
-                                             .error_shares = error_shares,
-                                             .comparable = comparable};
+constinit const ReportKind kReport{.tally = tally,
+                                   .tables = allocation_tables,
+                                   .merits = merits,
+                                   .sorts = true,
+                                   .words = words,
+                                   .method = method,
+                                   .warn = warn,
+                                   .answer = answer,
+                                   .shown_cells = cells,
+                                   .page = add_page,
+                                   .solved_page = add_prediction,
+                                   .error_shares = error_shares,
+                                   .comparable = comparable};
 
-}  // namespace poesy
+}  // namespace poesy::allocation

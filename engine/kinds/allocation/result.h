@@ -19,7 +19,16 @@
 #include "engine/run/result.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::axis {
+
+using Part = Axis<"part">;                 ///< Parts of the machine.
+using Stage = Axis<"stage">;               ///< Stages of the search.
+using CurveYield = Axis<"curve_yield">;    ///< Yields at which a cost curve is predicted.
+using CurveFactor = Axis<"curve_factor">;  ///< Factors on all limits at which a cost curve is predicted.
+
+}  // namespace poesy::axis
+
+namespace poesy::allocation {
 
 /// The cost of a tolerance T (SI), as a law with parameters. The parameters are kept, with b converted to SI, so that
 /// the study can be written again with exactly the same cost.
@@ -101,7 +110,7 @@ enum class Aim {
 };
 
 /// The options of a study of kind `allocation`.
-struct AllocationOptions {
+struct Options {
   std::vector<AllocatedPart> parts;  ///< parts whose tolerances are sought; all other errors keep their distribution
   Aim aim = Aim::least_cost;         ///< which tolerances are sought
   double yield = 0.9973;             ///< share of machines that must be within all limits at all poses
@@ -112,7 +121,7 @@ std::string_view name(StatedCost::Law law);  ///< The name of a law in study fil
 std::string_view name(Aim aim);              ///< The name of an aim in study files.
 
 /// The kind of study that finds tolerances under limits, `allocation`.
-extern const StudyKind kAllocationStudy;
+extern const StudyKind kStudy;
 
 /// Name of the stage in which tolerances are rounded down to the values that the study asks for.
 inline constexpr std::string_view kRoundedDown = "rounded down";
@@ -128,16 +137,9 @@ struct AllocationStage {
   std::uint64_t rejects = 0;   ///< rejects among these machines
 };
 
-namespace axis {
-using Part = Axis<"part">;                 ///< Parts of the machine.
-using Stage = Axis<"stage">;               ///< Stages of the search.
-using CurveYield = Axis<"curve_yield">;    ///< Yields at which a cost curve is predicted.
-using CurveFactor = Axis<"curve_factor">;  ///< Factors on all limits at which a cost curve is predicted.
-}  // namespace axis
-
 /// The result of a study of kind `allocation`. Numbers are in SI units. Numbers that are not defined are NaN, such as
 /// `multiplier`, `limit_use` and `saving` of a response without a limit.
-struct AllocationResult {
+struct Result {
   /// A value for each part.
   template <class T>
   using Parts = Array<T, axis::Part>;
@@ -252,10 +254,10 @@ struct AllocationResult {
 };
 
 /// The result of a study of kind `allocation`, read from a file. Precondition: the result is of this kind.
-inline const AllocationResult& allocation_of(const StoredResult& result) { return found_of<AllocationResult>(result); }
+inline const Result& allocation_of(const StoredResult& result) { return found_of<Result>(result); }
 
 /// The tables of the result: certificate, parts of the drawing, errors in no part, use and cost of each limit, stages
 /// of the search, and predicted costs with other yields and limits.
 std::vector<Table> allocation_tables(const StoredResult& result, const TableOptions& options = {});
 
-}  // namespace poesy
+}  // namespace poesy::allocation

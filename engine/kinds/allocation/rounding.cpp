@@ -4,7 +4,7 @@
 
 #include "engine/base/text.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 constexpr double kSameMultiple = 1e-12;  // a tolerance that differs from a multiple by less than this share counts as
@@ -43,4 +43,4 @@ std::string rounding_words(const Rounding& rounding, Dimension dimension) {
                          : "steps of " + readable_text({rounding.unit, dimension});
 }
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -7,7 +7,7 @@
 #include "engine/fits/preferred_numbers.h"
 #include "engine/study/study_kind.h"
 
-namespace poesy {
+namespace poesy::allocation {
 
 /// Tolerances that a workshop prefers: multiples of a step, or preferred numbers of ISO 3 in some unit.
 struct Rounding {
@@ -29,4 +29,4 @@ std::string rounding_text(const Rounding& rounding, Dimension dimension);
 /// The preferred tolerances in words: "R10" or "steps of 0.001 mm".
 std::string rounding_words(const Rounding& rounding, Dimension dimension);
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -94,7 +94,7 @@ bool has_effect(const ToleranceLimits& limits, std::span<const double> tolerance
   return false;
 }
 
-/// The value of AllocationResult::bound for a part. An orientation that the drawing does not need is as wide as its
+/// The value of Result::bound for a part. An orientation that the drawing does not need is as wide as its
 /// location allows, so what depends on it depends on the location.
 std::uint8_t bound_of(const ToleranceProgramme& programme, const TolerancePoint& point, const ToleranceLimits& limits,
                       std::size_t part) {
@@ -104,12 +104,12 @@ std::uint8_t bound_of(const ToleranceProgramme& programme, const TolerancePoint&
     const bool is_as_wide = pair.outer == part && programme.is_void(point, pair.inner);
     decides = decides || (is_as_wide && has_effect(limits, point.tolerance, pair.inner));
   }
-  return decides ? static_cast<std::uint8_t>(bound) : AllocationResult::kWithoutEffect;
+  return decides ? static_cast<std::uint8_t>(bound) : Result::kWithoutEffect;
 }
 
 /// Sets the members of a result that have a value for each part.
 void add_parts(const SearchProblem& problem, const FoundTolerances& search, const ToleranceLimits& limits,
-               AllocationResult& found) {
+               Result& found) {
   const Study& study = problem.run.study;
   const ToleranceProgramme& programme = problem.programme;
   const TolerancePoint& point = search.design.candidate.point;
@@ -118,12 +118,12 @@ void add_parts(const SearchProblem& problem, const FoundTolerances& search, cons
   found.error_mean_square_share = Array<double, axis::Factor>({errors}, kNaN);
   for (auto* numbers : {&found.tolerance, &found.sigma, &found.sigmas, &found.shift, &found.cost, &found.share,
                         &found.mean_square_share}) {
-    *numbers = AllocationResult::Parts<double>({parts});
+    *numbers = Result::Parts<double>({parts});
   }
   for (auto* texts : {&found.part_members, &found.part_unit, &found.chosen}) {
-    *texts = AllocationResult::Parts<std::string>({parts});
+    *texts = Result::Parts<std::string>({parts});
   }
-  found.bound = AllocationResult::Parts<std::uint8_t>({parts});
+  found.bound = Result::Parts<std::uint8_t>({parts});
   const std::size_t tightest = worst_use(limits, point.tolerance).limit;
   const std::vector<double> shares = mean_square_shares(programme, point, limits, tightest);
   const auto slopes = std::span(search.linearisation.squares.slope).subspan(tightest * errors, errors);
@@ -169,18 +169,18 @@ Feature found_feature(const ToleranceProgramme& programme, const TolerancePoint&
 }
 
 /// Sets the members of a result that describe tolerance zones.
-void add_zones(const SearchProblem& problem, const TolerancePoint& point, AllocationResult& found) {
+void add_zones(const SearchProblem& problem, const TolerancePoint& point, Result& found) {
   const ModelDescription& model = problem.run.study.model();
   const std::vector<AllocatedPart>& parts = problem.programme.parts();
   if (std::ranges::none_of(parts, [](const AllocatedPart& part) { return part.zone.has_value(); })) return;
   const Study drawn = problem.programme.at(point.tolerance);
   for (auto* texts : {&found.zone_feature, &found.zone_limbs, &found.zone_key, &found.zone_shape, &found.zone_datums}) {
-    *texts = AllocationResult::Parts<std::string>({parts.size()});
+    *texts = Result::Parts<std::string>({parts.size()});
   }
   for (auto* numbers : {&found.zone_length, &found.zone_width, &found.zone_inside}) {
-    *numbers = AllocationResult::Parts<double>({parts.size()}, kNaN);
+    *numbers = Result::Parts<double>({parts.size()}, kNaN);
   }
-  found.zone_is_needed = AllocationResult::Parts<std::uint8_t>({parts.size()}, 1);
+  found.zone_is_needed = Result::Parts<std::uint8_t>({parts.size()}, 1);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const AllocatedPart& part = parts[i];
     if (!part.zone) continue;
@@ -204,7 +204,7 @@ void add_zones(const SearchProblem& problem, const TolerancePoint& point, Alloca
 
 /// Sets the members of a result that describe the limits.
 void add_limits(const SearchProblem& problem, const FoundTolerances& search, const ToleranceLimits& limits,
-                AllocationResult& found) {
+                Result& found) {
   const Candidate& candidate = search.design.candidate;
   const MeanSquares& squares = search.linearisation.squares;
   const std::vector<ResponseLimit>& stated = problem.run.study.analysis.limits;
@@ -212,7 +212,7 @@ void add_limits(const SearchProblem& problem, const FoundTolerances& search, con
   const std::size_t responses = problem.run.study.model().responses.size();
   const std::size_t poses = problem.run.poses.size();
   found.limit = found.saving = found.fixed_share = Array<double, axis::Response>({responses}, kNaN);
-  found.multiplier = found.limit_use = AllocationResult::AtPoses({responses, poses}, kNaN);
+  found.multiplier = found.limit_use = Result::AtPoses({responses, poses}, kNaN);
   if (!std::ranges::all_of(stated, [](const ResponseLimit& one) { return one.allowed.is_magnitude(); })) {
     found.limit_from = found.limit_to = found.limit;
   }
@@ -257,7 +257,7 @@ void add_limits(const SearchProblem& problem, const FoundTolerances& search, con
 
 /// Sets the predicted costs at other yields and with other limits. The prediction for other yields uses the loads
 /// (MachineLoads) of the machines with which the tolerances were found.
-void add_curves(const SearchProblem& problem, const FoundTolerances& search, AllocationResult& found) {
+void add_curves(const SearchProblem& problem, const FoundTolerances& search, Result& found) {
   const auto& [point, chosen, share] = search.design.candidate;
   if (std::isnan(point.cost)) return;
   const double confidence = problem.options.confidence;
@@ -284,12 +284,12 @@ void add_curves(const SearchProblem& problem, const FoundTolerances& search, All
 
 /// The result of a study whose search found these tolerances. fresh: the loads (MachineLoads) of the certificate's
 /// machines.
-AllocationResult result_of(const SearchProblem& problem, const FoundTolerances& search, const MachineLoads& fresh,
-                           const Study& certificate) {
+Result result_of(const SearchProblem& problem, const FoundTolerances& search, const MachineLoads& fresh,
+                 const Study& certificate) {
   const Study& study = problem.run.study;
   const Candidate& candidate = search.design.candidate;
   const ToleranceLimits limits = limits_of(problem, search);
-  AllocationResult found;
+  Result found;
   add_parts(problem, search, limits, found);
   add_zones(problem, candidate.point, found);
   add_limits(problem, search, limits, found);
@@ -341,7 +341,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   const auto fresh = machine_loads(Plan(certificate, run.poses), run.model, certificate.analysis.limits, run.options,
                                    problem.calibration_of(certificate).get());
   if (!fresh || !run.makes_result()) return std::nullopt;
-  AllocationResult found = result_of(problem, *search, *fresh, certificate);
+  Result found = result_of(problem, *search, *fresh, certificate);
   LimitVerdicts verdicts = verdicts_of(run.study, *fresh, found.certificate);
   return StudyResult{std::move(found), std::move(verdicts), {}, certificate};
 }
@@ -378,7 +378,7 @@ Outlook allocation_outlook(const Study& study, const Model& model, const PoseSet
   const std::size_t numbers = poses.size() * of_pose * sizeof(double);
   // Bytes in the result file for a part: its numbers and names, and its text in the study of the certificate.
   constexpr std::size_t kPart = 400;
-  const std::size_t parts = kPart * asked_of<AllocationOptions>(study.analysis).parts.size();
+  const std::size_t parts = kPart * asked_of<Options>(study.analysis).parts.size();
   const std::size_t file = numbers + poses.size() * kSolverColumns + parts;
   return {
       .solves = fmt::format("about {:.0f} x {} x {} machines and {:.2g} for the effects of {}: {:.2g} solves", kTrials,
@@ -397,12 +397,11 @@ Outlook allocation_outlook(const Study& study, const Model& model, const PoseSet
 }  // namespace
 }  // namespace poesy::allocation
 
-namespace poesy {
+namespace poesy::allocation {
 
-constinit const Kind kAllocationKind{
-    .study = kAllocationStudy,
-    .run = {allocation::run_study_of_kind, allocation::allocation_outlook, nullptr, true},
-    .file = kAllocationFile,
-    .report = kAllocationReport};
+constinit const Kind kKind{.study = kStudy,
+                           .run = {allocation::run_study_of_kind, allocation::allocation_outlook, nullptr, true},
+                           .file = kFile,
+                           .report = kReport};
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -38,7 +38,7 @@ std::uint64_t seed_of_others(const Study& study, SampleIndex set) {
 
 SearchProblem::SearchProblem(const StudyRun& study_run)
     : run(study_run),
-      options(asked_of<AllocationOptions>(run.study.analysis)),
+      options(asked_of<Options>(run.study.analysis)),
       programme(run.study, run.model),
       allowed(allowed_rejects(options.yield, options.confidence, run.study.analysis.samples)),
       calibration(machine_calibration(run.study, run.model, run.poses)) {}

@@ -44,7 +44,7 @@ struct SearchProblem {
   explicit SearchProblem(const StudyRun& study_run);
 
   const StudyRun& run;                            ///< the study, its model and how it is run
-  const AllocationOptions& options;               ///< the options of the study
+  const Options& options;                         ///< the options of the study
   ToleranceProgramme programme;                   ///< the optimisation problem for the tolerances of the parts
   AllowedRejects allowed;                         ///< allowed rejects among as many machines as the study has samples
   std::optional<MachineCalibration> calibration;  ///< how the study's machines are calibrated; none: they are not
@@ -100,7 +100,7 @@ struct FoundTolerances {
   Linearisation linearisation;  ///< the linearisation that the last optimisation used
   ToleranceDesign design;       ///< the tolerances, and the loads of the design's machines with them (MachineLoads)
   std::vector<double> coarser_yield;  ///< [parts] predicted yield if the tolerance of this part alone is larger, see
-                                      ///< AllocationResult::coarser_yield
+                                      ///< Result::coarser_yield
   StageLog log;                       ///< the stages of the search
 };
 

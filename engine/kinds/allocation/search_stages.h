@@ -130,7 +130,7 @@ ToleranceDesign scale_to_other_machines(const SearchProblem& problem, const Tole
 struct Probed {
   ToleranceDesign design;             ///< the tolerances, and the loads of machines with them (MachineLoads)
   std::vector<double> coarser_yield;  ///< [parts] predicted yield if the tolerance of this part alone is larger, see
-                                      ///< AllocationResult::coarser_yield
+                                      ///< Result::coarser_yield
 };
 
 /// Predicts the yield for each part if only this part is coarser. Makes parts coarser if that saves cost and the design

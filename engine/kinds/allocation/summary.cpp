@@ -8,7 +8,7 @@
 #include "engine/base/units.h"
 #include "engine/report/display.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 /// Rounds down to this many significant digits. If a value is below a number with this many digits only because of
@@ -22,7 +22,7 @@ double rounded_down(double value, int digits) {
 
 }  // namespace
 
-std::vector<std::size_t> limited_responses(const AllocationResult& found) {
+std::vector<std::size_t> limited_responses(const Result& found) {
   std::vector<std::size_t> list;
   for (std::size_t r = 0; r < found.limit.size(); ++r) {
     if (!std::isnan(found.limit(r))) list.push_back(r);
@@ -41,24 +41,24 @@ std::optional<std::size_t> worst_pose(std::span<const double> at_poses) {
   return worst;
 }
 
-const AllocationResult::Parts<double>& shown_shares(const AllocationResult& found) {
+const Result::Parts<double>& shown_shares(const Result& found) {
   return has_costs(found) ? found.share : found.mean_square_share;
 }
 
-std::vector<std::size_t> ordered_parts(const AllocationResult& found, RowOrder order) {
+std::vector<std::size_t> ordered_parts(const Result& found, RowOrder order) {
   std::vector<std::size_t> list = positions(found.parts());
   if (order == RowOrder::study) return list;
   if (order == RowOrder::name) {
     std::ranges::stable_sort(list, {}, [&](std::size_t n) { return found.part_names[n]; });
     return list;
   }
-  const AllocationResult::Parts<double>& shares = shown_shares(found);
+  const Result::Parts<double>& shares = shown_shares(found);
   std::ranges::stable_sort(list, std::ranges::greater(),
                            [&](std::size_t n) { return std::isnan(shares(n)) ? -HUGE_VAL : shares(n); });
   return list;
 }
 
-std::string certificate_text(const AllocationResult& found) {
+std::string certificate_text(const Result& found) {
   using enum YieldVerdict::Decision;
   const YieldVerdict& shown = found.certificate;
   const std::string good = "of the machines are within all limits at all poses";
@@ -75,7 +75,7 @@ std::string certificate_text(const AllocationResult& found) {
   return fmt::format("not certified: it is not shown with {} that at least {} {} {}", sure, asked, good, counts);
 }
 
-std::size_t parts_on_drawing(const AllocationResult& found) {
+std::size_t parts_on_drawing(const Result& found) {
   std::size_t drawn = 0;
   for (std::size_t n = 0; n < found.parts(); ++n) drawn += found.is_left_out(n) ? 0 : 1;
   return drawn;
@@ -92,4 +92,4 @@ std::string drawing_text(double tolerance, const std::string& si_unit) {
   return unit.dimension == Dimension::number ? number : fmt::format("{} {}", number, unit.name);
 }
 
-}  // namespace poesy
+}  // namespace poesy::allocation

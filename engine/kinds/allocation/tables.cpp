@@ -16,10 +16,8 @@
 #include "engine/report/display.h"
 #include "engine/study/limit_keys.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
-
-using Result = AllocationResult;
 
 constexpr int kCostDigits = 4;
 constexpr int kFullDigits = 6;  ///< digits of a tolerance and of its standard deviation
@@ -186,7 +184,7 @@ double largest(std::span<const double> at_poses) {
 
 constexpr double kNoticeable = 0.001;  // smallest share of a mean square that tables show
 
-/// Returns true if causes other than the parts (AllocationResult::fixed_share) make up at least this share of the mean
+/// Returns true if causes other than the parts (Result::fixed_share) make up at least this share of the mean
 /// square of some limited response.
 bool have_fixed_share(const Result& found, double least) {
   return std::ranges::any_of(found.fixed_share.all(), [&](double share) { return share >= least; });
@@ -386,7 +384,7 @@ void append_curves(const Result& found, std::vector<Table>& tables) {
   }
   if (!found.curve_factor.empty()) {
     Table table{.name = "cost_of_limits", .caption = "What other limits would cost", .columns = {}};
-    // With a larger AllocationResult::fixed_share, other limits change the distribution of the response noticeably.
+    // With a larger Result::fixed_share, other limits change the distribution of the response noticeably.
     constexpr double kConsiderable = 0.05;
     if (have_fixed_share(found, kConsiderable)) {
       table.notes.emplace_back(
@@ -413,4 +411,4 @@ std::vector<Table> allocation_tables(const StoredResult& result, const TableOpti
   return tables;
 }
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -10,7 +10,7 @@
 #include "engine/kinds/allocation/load_solver.h"
 #include "engine/run/unit_fold.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 /// The largest number of machines in a piece of work. It is small so that a piece does not take long even if there are
@@ -239,4 +239,4 @@ std::optional<std::vector<double>> try_variations(const Plan& plan, const Model&
   return by_variation(job.varied, loads->load);
 }
 
-}  // namespace poesy
+}  // namespace poesy::allocation

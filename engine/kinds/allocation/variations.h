@@ -12,7 +12,7 @@
 #include "engine/study/plan.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::allocation {
 
 /// An error and a factor by which its values are multiplied.
 struct ErrorFactor {
@@ -42,4 +42,4 @@ std::optional<std::vector<double>> try_variations(const Plan& plan, const Model&
 /// at the limit.
 inline constexpr double kDeciding = 0.1;
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -10,7 +10,7 @@
 #include "engine/drawing/zone_scatter.h"
 #include "engine/kinds/allocation/zone_parts.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 /// A zone of a feature: the feature's index in ModelDescription::features, and the key of the zone.
@@ -257,4 +257,4 @@ std::string zones_text(const AllocatedPart& part, const ModelDescription& model)
   return fmt::format("zones = [{}]\neach = true\n{}{}", fmt::join(names, ", "), alike, shift);
 }
 
-}  // namespace poesy
+}  // namespace poesy::allocation

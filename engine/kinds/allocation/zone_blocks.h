@@ -10,7 +10,7 @@
 #include "engine/study/study_kind.h"
 
 /// Reads and writes those blocks [[analysis.parts]] of a study file whose parts are zones of a drawing.
-namespace poesy {
+namespace poesy::allocation {
 
 /// The parts of a block with the key `zones`; their cost and their possible tolerances are not set. Each named zone is
 /// a part, but zones of identical limbs share one. The part of a zone of location has all errors of the feature, or
@@ -28,4 +28,4 @@ void complete_zones(const StudyValue& value, const Study& study, std::vector<All
 /// The text of the keys of a block that reads back as this part. Precondition: the part is a zone.
 std::string zones_text(const AllocatedPart& part, const ModelDescription& model);
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -8,7 +8,7 @@
 #include "engine/base/contract.h"
 #include "engine/drawing/zone_scatter.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 double square(double x) { return x * x; }
@@ -111,4 +111,4 @@ std::vector<Within> zone_pairs(std::span<const AllocatedPart> parts, const Model
   return pairs;
 }
 
-}  // namespace poesy
+}  // namespace poesy::allocation

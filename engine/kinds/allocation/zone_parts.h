@@ -17,7 +17,7 @@
 /// in half a zone. With a zone of orientation, each error of the middle has the mean square (T^2 - T_o^2) / (4 k^2),
 /// and each error of the tilt has a multiple of T_o^2. Without a zone of orientation, middle and tilt share the zone of
 /// location.
-namespace poesy {
+namespace poesy::allocation {
 
 /// Whether the part is a zone of orientation. Precondition: the part is a zone.
 bool is_orientation(const AllocatedPart& part, const ModelDescription& model);
@@ -43,4 +43,4 @@ DrawnPart drawn_zone(const AllocatedPart& part, const ModelDescription& model, s
 /// given only if the location is so fine that the orientation does not limit the feature further.
 std::vector<Within> zone_pairs(std::span<const AllocatedPart> parts, const ModelDescription& model);
 
-}  // namespace poesy
+}  // namespace poesy::allocation

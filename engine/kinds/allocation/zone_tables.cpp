@@ -17,10 +17,8 @@
 #include "engine/model/feature.h"
 #include "engine/report/signs.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
-
-using Result = AllocationResult;
 
 bool is_zone(const Result& found, std::size_t n) { return !found.zone_key(n).empty(); }
 
@@ -178,4 +176,4 @@ CsvTable drawing_csv(const Result& found) {
   return table;
 }
 
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -21,7 +21,7 @@
 #include "engine/run/run_in_slots.h"
 #include "engine/study/calibration.h"
 
-namespace poesy {
+namespace poesy::calibration {
 namespace {
 
 using calibration::Components;
@@ -247,7 +247,7 @@ class Calibration {
     }
   }
 
-  void set_fitted(CalibrationResult& result) const {
+  void set_fitted(Result& result) const {
     for (const FittedErrors& fitted : table_.fit) {
       result.fitted.push_back({fitted.name, std::string(si_unit(fitted.dimension))});
     }
@@ -282,7 +282,7 @@ class Calibration {
                               kTargetParts.begin() + static_cast<std::ptrdiff_t>(numbers_of(target())));
   }
 
-  void set_values(CalibrationResult& result) const {
+  void set_values(Result& result) const {
     using Value = Array<double, axis::Value>;
     using Position = Array<std::uint64_t, axis::Value>;
     result.value_row = Position({machine_.file.values.size()});
@@ -313,7 +313,7 @@ class Calibration {
     for (const std::size_t i : inference_.outliers) result.outlier(i) = 1;
   }
 
-  void set_test(CalibrationResult& result) const {
+  void set_test(Result& result) const {
     result.dof = inference_.dof;
     const calibration::ObservabilityIndices& indices = inference_.indices;
     result.O2 = indices.O2;
@@ -330,7 +330,7 @@ class Calibration {
     result.O5 = indices.O5;
   }
 
-  void set_typed(CalibrationResult& result) const {
+  void set_typed(Result& result) const {
     const std::size_t k = table_.fit.size();
     std::vector<double> estimate(fit_.theta.begin(), fit_.theta.end());
     std::vector<double> nominal;
@@ -375,7 +375,7 @@ class Calibration {
   }
 
   void set_left(Calibrated& made) {
-    CalibrationResult& result = made.result;
+    Result& result = made.result;
     const std::size_t poses = machine_.predicted_at.size();
     result.drives = drives_of(machine_.study);
     result.left_mean = Array<double, axis::Pose, axis::Moved>({poses, calibration::kComponents.size()}, kNaN);
@@ -409,7 +409,7 @@ class Calibration {
     if (const std::string unjudged = kept.not_judged(); !unjudged.empty()) made.warnings.push_back(unjudged);
   }
 
-  void set_left_at(std::size_t m, const calibration::LeftAtPose& left, CalibrationResult& result) const {
+  void set_left_at(std::size_t m, const calibration::LeftAtPose& left, Result& result) const {
     std::ranges::copy(left.mean, result.left_mean.row(m).begin());
     std::ranges::copy(left.sd, result.left_sd.row(m).begin());
     if (!weights_.is_noise) std::ranges::fill(result.left_sd.row(m), kNaN);
@@ -534,4 +534,4 @@ class Calibration {
 
 Calibrated calibrate(const MachineToCalibrate& machine) { return Calibration(machine).run(); }
 
-}  // namespace poesy
+}  // namespace poesy::calibration

@@ -12,7 +12,7 @@
 #include "engine/study/machine_file.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::calibration {
 
 /// A parameter that an operator types into the controller. It is computed from the fitted errors.
 struct TypedNumber {
@@ -38,7 +38,7 @@ struct MachineToCalibrate {
 
 /// The result of a calibration, and information on the fit for the user.
 struct Calibrated {
-  CalibrationResult result;  ///< the result; the name, the text and the hash of the table of measurements are not set
+  Result result;             ///< the result; the name, the text and the hash of the table of measurements are not set
   std::uint64_t solves = 0;  ///< how many times the mechanism was solved
   std::vector<std::string> warnings;  ///< warnings, as sentences for people
 };
@@ -48,4 +48,4 @@ struct Calibrated {
 /// commanded coordinates.
 Calibrated calibrate(const MachineToCalibrate& machine);
 
-}  // namespace poesy
+}  // namespace poesy::calibration

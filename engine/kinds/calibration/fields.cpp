@@ -12,10 +12,8 @@
 #include "engine/result/result_parts.h"
 #include "engine/study/calibration.h"
 
-namespace poesy {
+namespace poesy::calibration {
 namespace {
-
-using Result = CalibrationResult;
 
 constexpr const char* kFittedUnit = "SI: unit of the fitted error, see /calibration/fitted_unit";
 constexpr const char* kSquareUnit = "SI: product of the units of two fitted errors";
@@ -268,6 +266,6 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
 
 }  // namespace
 
-constinit const FileKind kCalibrationFile{.write = write, .read = read, .append_tables = append_tables};
+constinit const FileKind kFile{.write = write, .read = read, .append_tables = append_tables};
 
-}  // namespace poesy
+}  // namespace poesy::calibration

@@ -15,14 +15,14 @@
 #include "engine/report/display.h"
 #include "engine/report/html/parts.h"
 
-namespace poesy {
+namespace poesy::calibration {
 namespace {
 
 /// The title of the column in which a value was measured: "deviation_z" of "deviation_z of p5".
 std::string column_of(const std::string& value) { return value.substr(0, value.find(' ')); }
 
 /// The columns of the table of measurements that have values, in order.
-std::vector<std::string> measured_columns(const CalibrationResult& found) {
+std::vector<std::string> measured_columns(const Result& found) {
   std::vector<std::string> columns;
   for (const std::string& value : found.values) {
     if (std::ranges::find(columns, column_of(value)) == columns.end()) columns.push_back(column_of(value));
@@ -32,8 +32,7 @@ std::vector<std::string> measured_columns(const CalibrationResult& found) {
 
 /// [rows of the table of measurements] The elements of `numbers` that belong to the measured values in one column; NaN
 /// for a row without a value in this column. numbers: one number for each measured value.
-std::vector<double> at_rows(const CalibrationResult& found, const std::string& column,
-                            const Array<double, axis::Value>& numbers) {
+std::vector<double> at_rows(const Result& found, const std::string& column, const Array<double, axis::Value>& numbers) {
   std::vector<double> list(found.rows.size(), kNaN);
   for (std::size_t i = 0; i < found.values.size(); ++i) {
     if (column_of(found.values[i]) == column) list[found.value_row(i)] = numbers(i);
@@ -50,12 +49,12 @@ std::vector<double> column_at(const Array<double, A...>& matrix, std::size_t col
 }
 
 /// The SI unit of the values of a column.
-std::string unit_of(const CalibrationResult& found, const std::string& column) {
+std::string unit_of(const Result& found, const std::string& column) {
   const auto first = std::ranges::find(found.values, column, column_of);
   return found.value_units[static_cast<std::size_t>(first - found.values.begin())];
 }
 
-std::vector<Field> residual_fields(const CalibrationResult& found, ArrayPool& pool) {
+std::vector<Field> residual_fields(const Result& found, ArrayPool& pool) {
   std::vector<Field> fields;
   for (const std::string& column : measured_columns(found)) {
     const NamedUnit named{column, unit_of(found, column)};
@@ -76,7 +75,7 @@ std::vector<Field> residual_fields(const CalibrationResult& found, ArrayPool& po
 
 /// A map of the poses at which the machine was measured, coloured by residuals.
 WorkspaceMap residual_map(const StoredResult& result, ArrayPool& pool) {
-  const CalibrationResult& found = calibration_of(result);
+  const Result& found = calibration_of(result);
   WorkspaceMap map;
   for (std::size_t c = 0; c < result.pose_coordinates.size(); ++c) {
     const NamedUnit& named = result.pose_coordinates[c];
@@ -100,7 +99,7 @@ void add_residuals(const StoredResult& result, std::span<const Table> tables, Pa
   section.table(tables, "residuals");
 }
 
-void add_correlations(const CalibrationResult& found, Page& page) {
+void add_correlations(const Result& found, Page& page) {
   if (found.fitted.size() < 2) return;
   Section& section = page.add_section("together", "Which fitted errors move together");
   HeatMap map{{}, names_of(found.fitted), "fitted error, in the order of the rows", {}};
@@ -112,7 +111,7 @@ void add_correlations(const CalibrationResult& found, Page& page) {
 }
 
 /// [poses] The root mean square of a component of the remaining displacement, including its standard deviation, SI.
-std::vector<double> left_rms_at_poses(const CalibrationResult& found, std::size_t component) {
+std::vector<double> left_rms_at_poses(const Result& found, std::size_t component) {
   std::vector<double> list = column_at(found.left_mean, component);
   const std::vector<double> sd = column_at(found.left_sd, component);
   for (std::size_t m = 0; m < list.size(); ++m) list[m] = std::hypot(list[m], sd[m]);
@@ -120,7 +119,7 @@ std::vector<double> left_rms_at_poses(const CalibrationResult& found, std::size_
 }
 
 /// [poses] The root mean square length of the remaining displacement, including its uncertainty, m.
-std::vector<double> left_lengths_at_poses(const CalibrationResult& found, const LeftLength& length) {
+std::vector<double> left_lengths_at_poses(const Result& found, const LeftLength& length) {
   std::vector<double> list = left_rms_at_poses(found, length.first);
   for (const std::size_t next : {length.first + 1, length.first + 2}) {
     const std::vector<double> component = left_rms_at_poses(found, next);
@@ -130,7 +129,7 @@ std::vector<double> left_lengths_at_poses(const CalibrationResult& found, const 
 }
 
 void add_left(const StoredResult& result, Page& page) {
-  const CalibrationResult& found = calibration_of(result);
+  const Result& found = calibration_of(result);
   std::vector<LeftComponent> components = left_components(found);
   if (components.empty()) return;
   std::stable_partition(components.begin(), components.end(),
@@ -170,4 +169,4 @@ void add_calibration_figures(const StoredResult& result, std::span<const Table> 
   add_left(result, page);
 }
 
-}  // namespace poesy
+}  // namespace poesy::calibration

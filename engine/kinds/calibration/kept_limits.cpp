@@ -10,7 +10,7 @@
 #include "engine/random/normal_quantile.h"
 #include "engine/random/stream.h"
 
-namespace poesy {
+namespace poesy::calibration {
 namespace {
 
 using calibration::Matrix;
@@ -105,4 +105,4 @@ double KeptLimits::share() const {
   return static_cast<double>(kept) / static_cast<double>(kMachines);
 }
 
-}  // namespace poesy
+}  // namespace poesy::calibration

@@ -8,7 +8,7 @@
 #include "engine/model/model.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::calibration {
 
 /// The probability that a calibrated machine keeps the limits of its study. It is estimated as the share of 1000
 /// machines that keep all limits. The errors of these machines are drawn from the estimated distribution of the
@@ -47,4 +47,4 @@ class KeptLimits {
   std::string not_judged_;
 };
 
-}  // namespace poesy
+}  // namespace poesy::calibration

@@ -2,15 +2,15 @@
 
 #include "engine/kinds/kind.h"
 
-namespace poesy {
+namespace poesy::calibration {
 
 /// The kind of results that `poesy calibrate` writes. No study has this kind.
-extern const Kind kCalibrationKind;
+extern const Kind kKind;
 
 /// How results of calibrations are stored and reported.
 /// @{
-extern const FileKind kCalibrationFile;
-extern const ReportKind kCalibrationReport;
+extern const FileKind kFile;
+extern const ReportKind kReport;
 /// @}
 
-}  // namespace poesy
+}  // namespace poesy::calibration

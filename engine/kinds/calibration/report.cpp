@@ -16,11 +16,11 @@
 #include "engine/report/signs.h"
 #include "engine/report/tables.h"
 
-namespace poesy {
+namespace poesy::calibration {
 namespace {
 
 /// A note that explains the columns of the table of fitted errors.
-std::string fitted_legend(const CalibrationResult& found) {
+std::string fitted_legend(const Result& found) {
   return fmt::format(
       "estimate: the error that was fitted, in its unit; low, high: its {} interval; sd: its standard deviation; {}",
       percent_text(found.conf_level),
@@ -29,7 +29,7 @@ std::string fitted_legend(const CalibrationResult& found) {
           : "scale/sd: a usual size (1 mm, or 1 mm over the reach) over it");
 }
 
-Table fitted_table(const CalibrationResult& found) {
+Table fitted_table(const Result& found) {
   Table table{.name = "fitted", .caption = measured_text(found), .columns = {}};
   const auto value = [&](const std::string& name, const auto& array, int dispensable = 0) {
     return FilledColumn{number_column(name, name, "", dispensable),
@@ -53,7 +53,7 @@ Table fitted_table(const CalibrationResult& found) {
   return table;
 }
 
-Table frame_table(const CalibrationResult& found) {
+Table frame_table(const Result& found) {
   Table table{
       .name = "frame",
       .caption = "The unknown frame of the measuring device, and the target",
@@ -66,7 +66,7 @@ Table frame_table(const CalibrationResult& found) {
   return table;
 }
 
-Table next_table(const StoredResult& result, const CalibrationResult& found) {
+Table next_table(const StoredResult& result, const Result& found) {
   Table table{
       .name = "next",
       .caption = "Poses to measure next, the best first",
@@ -86,7 +86,7 @@ Table next_table(const StoredResult& result, const CalibrationResult& found) {
 }
 
 std::vector<Table> calibration_result_tables(const StoredResult& result, const TableOptions&) {
-  const CalibrationResult& found = calibration_of(result);
+  const Result& found = calibration_of(result);
   std::vector<Table> tables{fitted_table(found)};
   if (!found.frame_parts.empty()) tables.push_back(frame_table(found));
   if (found.converged != 0 && !found.gain.empty()) tables.push_back(next_table(result, found));
@@ -106,14 +106,14 @@ StudyWords words(const StoredResult& result) {
 }
 
 MethodWords method(const StoredResult& result) {
-  const CalibrationResult& found = calibration_of(result);
+  const Result& found = calibration_of(result);
   return {fmt::format("{} fitted to {} that were measured at {}. {}",
                       counted(found.fitted.size(), "number was", "numbers were"), values_text(found),
                       counted(found.measured_poses, "pose", "poses"), as_sentence(residual_text(found)))};
 }
 
 /// A fitted value with half of its interval: "rods -0.1494 +- 0.1018 mm".
-std::string estimate_text(const CalibrationResult& found, std::size_t n) {
+std::string estimate_text(const Result& found, std::size_t n) {
   const Unit& unit = display(found.fitted[n]);
   const double half = (found.high(n) - found.estimate(n)) / unit.si;
   const std::string text = fmt::format("{} {}", found.fitted[n].name, number_text(found.estimate(n) / unit.si, 4));
@@ -122,14 +122,14 @@ std::string estimate_text(const CalibrationResult& found, std::size_t n) {
 }
 
 /// A text on how sure the fitted values are: the residuals, and what the intervals do not show.
-std::string sure_text(const CalibrationResult& found) {
+std::string sure_text(const Result& found) {
   std::string text = sentence(residual_text(found));
   for (const std::string& note : unsure_notes(found)) text += " " + sentence(note);
   return text;
 }
 
 /// Advice for measurements that contradict the fitted errors: what to do before the fitted values are used.
-std::string contradiction_text(const CalibrationResult& found) {
+std::string contradiction_text(const Result& found) {
   const bool has_outlier = std::ranges::any_of(found.outlier.all(), [](auto is) { return is != 0; });
   return has_outlier ? "First find out why the outlier is so far off: the fitted values rest on it."
          : found.unfitted > 0
@@ -138,7 +138,7 @@ std::string contradiction_text(const CalibrationResult& found) {
 }
 
 /// Advice on the parameters to type into the controller, and on what to measure next.
-std::string advice_text(const CalibrationResult& found) {
+std::string advice_text(const Result& found) {
   if (found.converged == 0) return sentence(kNotConvergedRemedy);
   const std::string typed = typed_text(found);
   std::string text = sentence(typed.empty() ? "give the controller the fitted values" : typed);
@@ -155,7 +155,7 @@ std::string advice_text(const CalibrationResult& found) {
 }
 
 /// A text with the fitted values, and with the displacement that remains after calibration.
-std::string found_text(const CalibrationResult& found) {
+std::string found_text(const Result& found) {
   constexpr std::size_t kMostValues = 6;
   std::vector<std::string> values;
   for (std::size_t n = 0; n < found.fitted.size(); ++n) {
@@ -170,7 +170,7 @@ std::string found_text(const CalibrationResult& found) {
 
 /// The summary at the top of the report. Warnings come first, because all other lines depend on the fitted errors.
 Answer answer(const StoredResult& result) {
-  const CalibrationResult& found = calibration_of(result);
+  const Result& found = calibration_of(result);
   Answer lines;
   for (const std::string& warning : calibration_warnings(found)) lines.emplace_back("Caution", sentence(warning));
   if (const std::string kept = kept_text(found); !kept.empty()) lines.emplace_back("Limits", sentence(kept));
@@ -189,7 +189,7 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
 }
 
 Comparable comparable(const StoredResult& result, const StoredResult&) {
-  const CalibrationResult& found = calibration_of(result);
+  const Result& found = calibration_of(result);
   std::vector<std::vector<std::string>> units(1);
   std::vector<double> values;
   for (std::size_t n = 0; n < found.fitted.size(); ++n) {
@@ -209,26 +209,22 @@ std::optional<StudyResult> run_nothing(const StudyRun&) { return std::nullopt; }
 
 AtPose nothing_at_pose(const Study&) { return {0.0, "values", 0.0, "solves"}; }
 
-const StudyKind kCalibrationStudy{.name = "calibration",
-                                  .asks = "which errors a machine has that was measured",
-                                  .keys = {},
-                                  .at_pose = nothing_at_pose};
+const StudyKind kStudy{.name = "calibration",
+                       .asks = "which errors a machine has that was measured",
+                       .keys = {},
+                       .at_pose = nothing_at_pose};
 
 }  // namespace
 
-constinit const ReportKind kCalibrationReport{
-    .tally = tally,
-    .tables = calibration_result_tables,
-    .words = words,
-    .method = method,
-    .answer = answer,
-    .shown_cells = [](const StoredResult& result) { return shown_cells(result, 1); },
-    .page = add_page,
-    .comparable = comparable};
+constinit const ReportKind kReport{.tally = tally,
+                                   .tables = calibration_result_tables,
+                                   .words = words,
+                                   .method = method,
+                                   .answer = answer,
+                                   .shown_cells = [](const StoredResult& result) { return shown_cells(result, 1); },
+                                   .page = add_page,
+                                   .comparable = comparable};
 
-constinit const Kind kCalibrationKind{.study = kCalibrationStudy,
-                                      .run = {run_nothing, nullptr, nullptr},
-                                      .file = kCalibrationFile,
-                                      .report = kCalibrationReport};
+constinit const Kind kKind{.study = kStudy, .run = {run_nothing, nullptr, nullptr}, .file = kFile, .report = kReport};
 
-}  // namespace poesy
+}  // namespace poesy::calibration

@@ -11,7 +11,7 @@
 
 #include "engine/report/display.h"
 
-namespace poesy {
+namespace poesy::calibration {
 namespace {
 
 constexpr std::size_t kMostRows = 10;  // largest number of values in the table
@@ -20,29 +20,29 @@ constexpr int kResidualDigits = 3;
 
 /// The number by which values are ordered: the magnitude of the residual over its standard deviation, or of the
 /// residual if the noise is not known. 0 if no other value checks the value.
-double size_of(const CalibrationResult& found, std::size_t i) {
+double size_of(const Result& found, std::size_t i) {
   const double size = std::abs(found.noise_is_known != 0 ? found.standardised(i) : found.residual(i));
   return std::isnan(size) ? 0.0 : size;
 }
 
 /// True if no other measured value checks value i. The fit then reproduces the value exactly, so its residual has no
 /// standard deviation.
-bool is_unchecked(const CalibrationResult& found, std::size_t i) {
+bool is_unchecked(const Result& found, std::size_t i) {
   return found.noise_is_known != 0 && std::isnan(found.standardised(i));
 }
 
-std::vector<std::size_t> largest_residuals(const CalibrationResult& found) {
+std::vector<std::size_t> largest_residuals(const Result& found) {
   std::vector<std::size_t> order = positions(found.values.size());
   std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t i) { return size_of(found, i); });
   if (order.size() > kMostRows) order.resize(kMostRows);
   return order;
 }
 
-std::string mark_of(const CalibrationResult& found, std::size_t i) {
+std::string mark_of(const Result& found, std::size_t i) {
   return found.outlier(i) != 0 ? "outlier" : is_unchecked(found, i) ? "unchecked" : "";
 }
 
-std::vector<FilledColumn> place_columns(const StoredResult& result, const CalibrationResult& found) {
+std::vector<FilledColumn> place_columns(const StoredResult& result, const Result& found) {
   std::vector<FilledColumn> columns;
   for (std::size_t c = 0; c < result.pose_coordinates.size(); ++c) {
     const NamedUnit& own = result.pose_coordinates[c];
@@ -53,7 +53,7 @@ std::vector<FilledColumn> place_columns(const StoredResult& result, const Calibr
   return columns;
 }
 
-void add_notes(const CalibrationResult& found, const std::vector<std::size_t>& shown, Table& table) {
+void add_notes(const Result& found, const std::vector<std::size_t>& shown, Table& table) {
   table.notes.emplace_back("residual: measured less fitted value, in the unit of the value");
   if (found.noise_is_known != 0) {
     table.notes.emplace_back(
@@ -75,7 +75,7 @@ void add_notes(const CalibrationResult& found, const std::vector<std::size_t>& s
 }  // namespace
 
 Table residuals_table(const StoredResult& result) {
-  const CalibrationResult& found = calibration_of(result);
+  const Result& found = calibration_of(result);
   Table table{.name = "residuals",
               .caption = fmt::format("Measured against fitted values, the largest residual{} first",
                                      found.noise_is_known != 0 ? " over its standard deviation" : ""),
@@ -109,4 +109,4 @@ Table residuals_table(const StoredResult& result) {
   return table;
 }
 
-}  // namespace poesy
+}  // namespace poesy::calibration

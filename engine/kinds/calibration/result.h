@@ -9,9 +9,8 @@
 #include "engine/base/units.h"
 #include "engine/result/result_file.h"
 
-namespace poesy {
+namespace poesy::axis {
 
-namespace axis {
 using Fitted = Axis<"fitted">;            ///< Fitted errors.
 using OtherFitted = Axis<"with_fitted">;  ///< Fitted errors as the second axis of a matrix.
 using Direction = Axis<"direction">;      ///< Directions of fitted errors, ordered by their singular values.
@@ -23,11 +22,14 @@ using Drive = Axis<"drive">;              ///< Drives.
 using Next = Axis<"next">;                ///< Poses recommended for the next measurement.
 using Coordinate = Axis<"coordinate">;    ///< Coordinates of a pose.
 using Typed = Axis<"typed">;              ///< Parameters for the controller.
-}  // namespace axis
+
+}  // namespace poesy::axis
+
+namespace poesy::calibration {
 
 /// The calibration of one machine. Numbers are SI, and NaN if not determined or not known. "In scaled numbers" means
 /// that each fitted error is divided by its scale.
-struct CalibrationResult {
+struct Result {
   std::vector<NamedUnit> fitted;         ///< names and units of the fitted errors
   Array<double, axis::Fitted> estimate;  ///< estimated values of the fitted errors
   Array<double, axis::Fitted> sd;        ///< standard deviations of the estimates
@@ -125,7 +127,7 @@ struct CalibrationResult {
 };
 
 /// True if a value is the distance between the places of the platform at two poses.
-inline bool is_distance(const CalibrationResult& found, std::size_t value) {
+inline bool is_distance(const Result& found, std::size_t value) {
   return found.value_to(value) != found.value_row(value);
 }
 
@@ -133,8 +135,6 @@ inline bool is_distance(const CalibrationResult& found, std::size_t value) {
 std::vector<std::string> moved_names();
 
 /// The calibration in a result. Precondition: the result is of kind `calibration`.
-inline const CalibrationResult& calibration_of(const StoredResult& result) {
-  return found_of<CalibrationResult>(result);
-}
+inline const Result& calibration_of(const StoredResult& result) { return found_of<Result>(result); }
 
-}  // namespace poesy
+}  // namespace poesy::calibration

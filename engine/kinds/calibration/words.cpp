@@ -13,7 +13,7 @@
 #include "engine/calibration/inference.h"
 #include "engine/report/display.h"
 
-namespace poesy {
+namespace poesy::calibration {
 namespace {
 
 // If the p-value is smaller than this, the measurements contradict the fitted errors.
@@ -26,22 +26,22 @@ constexpr std::size_t kAngles = 3;  // number of components of a displacement th
 
 /// Returns true if a chi-square test can judge the fit: it converged, the noise is known and not estimated, and degrees
 /// of freedom are left.
-bool has_test(const CalibrationResult& found) {
+bool has_test(const Result& found) {
   return found.converged != 0 && found.noise_is_known != 0 && found.sd_is_estimated == 0 && found.dof > 0;
 }
 
 /// Returns true if the residuals are far smaller than expected from the stated noise. With a prior, the test also
 /// counts the estimates, which are expected to be of the size of their tolerances.
-bool is_noise_too_large(const CalibrationResult& found) { return has_test(found) && found.p > kTooQuiet; }
+bool is_noise_too_large(const Result& found) { return has_test(found) && found.p > kTooQuiet; }
 
-std::string some(const CalibrationResult& found, const std::vector<std::size_t>& numbers) {
+std::string some(const Result& found, const std::vector<std::size_t>& numbers) {
   std::vector<std::string> names;
   for (const std::size_t n : numbers) names.push_back(found.fitted[n].name);
   return some_names(names, 18);
 }
 
 /// Clauses on the combinations of fitted errors that the measurement cannot determine.
-std::vector<std::string> unseen_notes(const CalibrationResult& found) {
+std::vector<std::string> unseen_notes(const Result& found) {
   const auto k = static_cast<Eigen::Index>(found.fitted.size());
   calibration::Matrix projector(k, k);
   for (Eigen::Index i = 0; i < k; ++i) {
@@ -65,7 +65,7 @@ std::vector<std::string> unseen_notes(const CalibrationResult& found) {
 }
 
 /// Clauses on groups of fitted errors whose estimates are correlated.
-std::vector<std::string> together_notes(const CalibrationResult& found) {
+std::vector<std::string> together_notes(const Result& found) {
   std::vector<std::string> notes;
   std::vector<bool> listed(found.fitted.size(), false);
   for (std::size_t first = 0; first < found.fitted.size(); ++first) {
@@ -99,7 +99,7 @@ std::vector<std::string> together_notes(const CalibrationResult& found) {
 }
 
 /// A clause on the number of combinations of fitted errors with effects below the noise; empty if there are none.
-std::string below_noise_text(const CalibrationResult& found) {
+std::string below_noise_text(const Result& found) {
   if (found.noise_is_known == 0 || found.below_noise == 0) return {};
   const bool one = found.below_noise == 1;
   return fmt::format("{} of {} directions {} below the noise: the tolerances say more about {}", found.below_noise,
@@ -107,7 +107,7 @@ std::string below_noise_text(const CalibrationResult& found) {
 }
 
 /// A clause on the errors with a tolerance that are not fitted. Precondition: there are some.
-std::string unfitted_text(const CalibrationResult& found) {
+std::string unfitted_text(const Result& found) {
   const std::string text =
       fmt::format("{} more {} a tolerance and {} not fitted", found.unfitted,
                   found.unfitted == 1 ? "error has" : "errors have", found.unfitted == 1 ? "is" : "are");
@@ -119,7 +119,7 @@ std::string unfitted_text(const CalibrationResult& found) {
 
 /// The root mean square over the poses (SI) of a component of the displacement that remains after calibration,
 /// including its standard deviation.
-double left_rms(const CalibrationResult& found, std::size_t component) {
+double left_rms(const Result& found, std::size_t component) {
   double sum = 0.0;
   std::size_t poses = 0;
   for (std::size_t m = 0; m < found.left_mean.length<axis::Pose>(); ++m) {
@@ -132,14 +132,14 @@ double left_rms(const CalibrationResult& found, std::size_t component) {
   return std::sqrt(sum / static_cast<double>(poses));
 }
 
-bool is_measured(const CalibrationResult& found, const std::string& component) {
+bool is_measured(const Result& found, const std::string& component) {
   return std::ranges::any_of(found.values, [&](const std::string& value) {
     return value.starts_with("deviation_" + component + " ") || value.starts_with("actual_" + component + " ");
   });
 }
 
 /// True if two components of the remaining displacement are equal at all poses, except for rounding.
-bool are_same(const CalibrationResult& found, std::size_t one, std::size_t other) {
+bool are_same(const Result& found, std::size_t one, std::size_t other) {
   const auto same = [](double a, double b) {
     return std::abs(a - b) <= kLeftRounding || (std::isnan(a) && std::isnan(b));
   };
@@ -154,7 +154,7 @@ bool are_same(const CalibrationResult& found, std::size_t one, std::size_t other
 
 std::vector<std::string> moved_names() { return {calibration::kComponents.begin(), calibration::kComponents.end()}; }
 
-std::string values_text(const CalibrationResult& found) {
+std::string values_text(const Result& found) {
   std::map<std::string, std::size_t> counts;
   for (const std::string& value : found.values) ++counts[value.substr(0, value.find(' '))];
   std::vector<std::string> parts;
@@ -165,14 +165,14 @@ std::string values_text(const CalibrationResult& found) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::string measured_text(const CalibrationResult& found) {
+std::string measured_text(const Result& found) {
   return fmt::format("{}: {} at {}; {}, {}", found.file, values_text(found),
                      counted(found.measured_poses, "pose", "poses"),
                      counted(found.fitted.size(), "fitted error", "fitted errors"),
                      counted(found.dof, "degree of freedom", "degrees of freedom"));
 }
 
-std::string residual_text(const CalibrationResult& found) {
+std::string residual_text(const Result& found) {
   if (found.converged == 0) return "the fit did not converge";
   if (found.noise_is_known == 0) return "the noise is 0, so all values count alike and there are no intervals";
   const std::string residual = fmt::format("residual {:.3g} of the noise", found.rms);
@@ -185,16 +185,16 @@ std::string residual_text(const CalibrationResult& found) {
                                         : ": nothing contradicts the fitted errors");
 }
 
-std::vector<std::string> unsure_notes(const CalibrationResult& found) {
+std::vector<std::string> unsure_notes(const Result& found) {
   std::vector<std::string> notes;
   if (std::string below = below_noise_text(found); !below.empty()) notes.push_back(std::move(below));
   if (found.unfitted > 0) notes.push_back(unfitted_text(found));
   return notes;
 }
 
-bool is_contradicted(const CalibrationResult& found) { return has_test(found) && found.p < kContradiction; }
+bool is_contradicted(const Result& found) { return has_test(found) && found.p < kContradiction; }
 
-std::vector<std::string> estimate_notes(const CalibrationResult& found) {
+std::vector<std::string> estimate_notes(const Result& found) {
   std::vector<std::string> notes = unseen_notes(found);
   for (std::string& note : together_notes(found)) notes.push_back(std::move(note));
   std::string condition = fmt::format("condition {:.4g} (scaled by the tolerances and the noise)", found.condition);
@@ -204,7 +204,7 @@ std::vector<std::string> estimate_notes(const CalibrationResult& found) {
   return notes;
 }
 
-std::vector<LeftComponent> left_components(const CalibrationResult& found) {
+std::vector<LeftComponent> left_components(const Result& found) {
   const std::vector<std::string> moved = moved_names();
   std::vector<LeftComponent> list;
   for (std::size_t c = 0; c < moved.size(); ++c) {
@@ -216,7 +216,7 @@ std::vector<LeftComponent> left_components(const CalibrationResult& found) {
   return list;
 }
 
-std::optional<LeftLength> left_length(const CalibrationResult& found) {
+std::optional<LeftLength> left_length(const Result& found) {
   bool has_tool = false;
   for (std::size_t c = kAngles; c < 2 * kAngles; ++c) has_tool = has_tool || !are_same(found, c + kAngles, c);
   LeftLength made{{has_tool ? "tip_position" : "position", "m"}, (has_tool ? 2 : 1) * kAngles, 0.0};
@@ -225,7 +225,7 @@ std::optional<LeftLength> left_length(const CalibrationResult& found) {
   return made;
 }
 
-std::vector<std::string> left_notes(const CalibrationResult& found) {
+std::vector<std::string> left_notes(const Result& found) {
   if (found.converged == 0) return {};
   std::vector<std::string> parts;
   std::vector<std::string> unmeasured;
@@ -251,14 +251,14 @@ std::vector<std::string> left_notes(const CalibrationResult& found) {
   return notes;
 }
 
-std::string kept_text(const CalibrationResult& found) {
+std::string kept_text(const Result& found) {
   if (found.converged == 0 || std::isnan(found.kept)) return {};
   return fmt::format("the limits are kept at all poses by {} of the machines that this one may be{}",
                      percent_text(found.kept),
                      is_contradicted(found) ? ", if the fitted errors explained its measurements" : "");
 }
 
-std::string typed_text(const CalibrationResult& found) {
+std::string typed_text(const Result& found) {
   if (found.converged == 0) return {};
   // The half-width of an estimate's interval divided by its standard deviation. This ratio is the same for all fitted
   // errors.
@@ -279,7 +279,7 @@ std::string typed_text(const CalibrationResult& found) {
   return parts.empty() ? "" : fmt::format("to type in: {}", fmt::join(parts, ", "));
 }
 
-std::vector<std::string> calibration_warnings(const CalibrationResult& found) {
+std::vector<std::string> calibration_warnings(const Result& found) {
   std::vector<std::string> list;
   if (found.converged == 0) return {std::string(kNotConverged)};
   if (found.noise_is_known == 0) return list;
@@ -315,4 +315,4 @@ std::vector<std::string> calibration_warnings(const CalibrationResult& found) {
   return list;
 }
 
-}  // namespace poesy
+}  // namespace poesy::calibration

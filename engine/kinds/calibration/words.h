@@ -8,7 +8,7 @@
 
 #include "engine/kinds/calibration/result.h"
 
-namespace poesy {
+namespace poesy::calibration {
 
 /// What is said of a fit that did not converge, and what to do then.
 /// @{
@@ -19,19 +19,19 @@ inline constexpr std::string_view kNotConvergedRemedy =
 /// @}
 
 /// A text on what was measured: "12 deviation_z, 3 distances".
-std::string values_text(const CalibrationResult& found);
+std::string values_text(const Result& found);
 /// A text on what was measured and fitted: "heights.csv: 12 deviation_z, 3 distances at 13 poses; 7 fitted errors, 8
 /// degrees of freedom".
-std::string measured_text(const CalibrationResult& found);
+std::string measured_text(const Result& found);
 /// A text on the size of the residuals and the result of the chi-square test. If the noise is 0, or the fit did not
 /// converge, the text says so instead.
-std::string residual_text(const CalibrationResult& found);
+std::string residual_text(const Result& found);
 /// Clauses on what the intervals do not show: combinations of fitted errors with effects below the noise, and errors
 /// that are not fitted.
-std::vector<std::string> unsure_notes(const CalibrationResult& found);
+std::vector<std::string> unsure_notes(const Result& found);
 /// Clauses on estimates that are not determined or are correlated, on the condition number, on effects below the noise,
 /// and on errors that are not fitted.
-std::vector<std::string> estimate_notes(const CalibrationResult& found);
+std::vector<std::string> estimate_notes(const Result& found);
 /// A displacement that remains after calibration counts as rounding if it is below this (m or rad).
 inline constexpr double kLeftRounding = 1e-12;
 
@@ -44,7 +44,7 @@ struct LeftComponent {
 
 /// The components of the remaining displacement that are more than rounding. A component of the tool point is left out
 /// if it equals that of the platform's origin P, because there is no tool or the platform does not turn.
-std::vector<LeftComponent> left_components(const CalibrationResult& found);
+std::vector<LeftComponent> left_components(const Result& found);
 
 /// The length of the remaining displacement of the tool point, or of the platform's origin if there is no tool.
 struct LeftLength {
@@ -54,18 +54,18 @@ struct LeftLength {
 };
 
 /// The length of the remaining displacement; none if that displacement is only rounding.
-std::optional<LeftLength> left_length(const CalibrationResult& found);
+std::optional<LeftLength> left_length(const Result& found);
 
 /// Clauses on the displacement that remains after calibration, and on the limits.
-std::vector<std::string> left_notes(const CalibrationResult& found);
+std::vector<std::string> left_notes(const Result& found);
 /// A clause on the probability that the machine keeps the limits; empty if that is unknown or there are no limits.
-std::string kept_text(const CalibrationResult& found);
+std::string kept_text(const Result& found);
 /// The parameters to type into the controller, from the value while the machine was measured to the new one: "to type
 /// in: delta_radius 95.0000 -> 95.1139 +- 0.1394 mm". Empty without such parameters.
-std::string typed_text(const CalibrationResult& found);
+std::string typed_text(const Result& found);
 /// Whether the measurements contradict the fitted errors by the chi-square test, which needs known noise.
-bool is_contradicted(const CalibrationResult& found);
+bool is_contradicted(const Result& found);
 /// Warnings about outliers, measurements that contradict the fitted errors, and estimates far outside their tolerances.
-std::vector<std::string> calibration_warnings(const CalibrationResult& found);
+std::vector<std::string> calibration_warnings(const Result& found);
 
-}  // namespace poesy
+}  // namespace poesy::calibration

@@ -8,7 +8,7 @@
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
 
-namespace poesy {
+namespace poesy::coupling {
 namespace {
 
 /// The largest number of samples that are solved together.
@@ -30,7 +30,7 @@ Signs flipped(Signs signs, std::size_t block) {
 
 }  // namespace
 
-CornerTable::CornerTable(const CouplingStudy& study, const ModelDescription& model)
+CornerTable::CornerTable(const Options& study, const ModelDescription& model)
     : factors(coupling_factors(study, model)) {
   std::vector<std::vector<std::size_t>> of_source;
   for (const ErrorSource& source : study.sources) {
@@ -240,4 +240,4 @@ double expected_corners(const CornerTable& table, std::size_t responses) {
   return sum;
 }
 
-}  // namespace poesy
+}  // namespace poesy::coupling

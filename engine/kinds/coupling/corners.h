@@ -17,18 +17,20 @@
 
 /// Searches for the worst case of error sources whose signs are unknown. In a block (error_blocks()), each error has
 /// the size that the study states, and all have the same sign; a corner is a choice of the sign of each block.
-namespace poesy {
+namespace poesy::axis {
 
-namespace axis {
 using Block = Axis<"block">;  ///< Blocks of errors that have the same sign.
-}  // namespace axis
+
+}  // namespace poesy::axis
+
+namespace poesy::coupling {
 
 /// The sign of each block of errors in a subset of sources, '+' or '-'.
 using Signs = std::string;
 
 /// The blocks of each subset of sources, and the errors that the blocks contain.
 struct CornerTable {
-  CornerTable(const CouplingStudy& study, const ModelDescription& model);  ///< Lists the blocks of a study's sources.
+  CornerTable(const Options& study, const ModelDescription& model);  ///< Lists the blocks of a study's sources.
 
   std::vector<FactorIndex> factors;              ///< errors of the study, see coupling_factors()
   std::vector<std::vector<std::size_t>> blocks;  ///< blocks of all sources; a block is a list of indices in `factors`
@@ -128,4 +130,4 @@ class CornerSearch {
 /// The expected number of corners that are solved for one size at one pose. responses: number of responses.
 double expected_corners(const CornerTable& table, std::size_t responses);
 
-}  // namespace poesy
+}  // namespace poesy::coupling

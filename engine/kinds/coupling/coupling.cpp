@@ -23,7 +23,7 @@
 #include "engine/run/result.h"
 #include "engine/stats/indices.h"
 
-namespace poesy {
+namespace poesy::coupling {
 namespace {
 
 using PatternChoice = ErrorPattern::Choice;
@@ -110,7 +110,7 @@ std::pair<double, std::int64_t> largest_at(std::span<const double> values, std::
 }
 
 /// The names of the sizes of errors: "0.1 mm", or "0.1 mm, 0.1 deg" with lengths and angles.
-std::vector<std::string> size_names(const CouplingStudy& study) {
+std::vector<std::string> size_names(const Options& study) {
   std::vector<std::string> names;
   for (std::size_t z = 0; z < study.sizes(); ++z) {
     std::string& name = names.emplace_back();
@@ -127,8 +127,8 @@ Array<double, axis::Size> sizes_or_nan(const std::vector<double>& sizes, std::si
 }
 
 /// A result with the names on its axes, and with arrays of the right lengths whose numbers are not yet set.
-CouplingResult empty_result(const CouplingStudy& study, std::size_t responses, std::size_t poses) {
-  CouplingResult found;
+Result empty_result(const Options& study, std::size_t responses, std::size_t poses) {
+  Result found;
   found.size_names = size_names(study);
   found.sources = texts(study.sources, &ErrorSource::name);
   found.subsets = subset_names(study.sources);
@@ -149,7 +149,7 @@ CouplingResult empty_result(const CouplingStudy& study, std::size_t responses, s
 /// then their summaries.
 class Composer {
  public:
-  Composer(EvaluationResult evaluation, const CouplingStudy& study, const ModelDescription& model, NotConverged policy,
+  Composer(EvaluationResult evaluation, const Options& study, const ModelDescription& model, NotConverged policy,
            Array<double, axis::Response, axis::Size> rounding)
       : evaluation_(std::move(evaluation)),
         rows_(coupling_rows(study, model)),
@@ -159,7 +159,7 @@ class Composer {
     found_.rounding = std::move(rounding);
   }
 
-  CouplingResult operator()() {
+  Result operator()() {
     for (std::size_t r = 0; r < evaluation_.responses(); ++r) {
       for (std::size_t z = 0; z < found_.size_names.size(); ++z) {
         const Effects effects = effects_of(r, z);
@@ -212,7 +212,7 @@ class Composer {
       known.push_back(m);
       opposed += at.is_opposed(rounding) ? 1 : 0;
     }
-    const auto largest = [&](const CouplingResult::Curves& curves) { return largest_at(curves.row(r, z, k), known); };
+    const auto largest = [&](const Result::Curves& curves) { return largest_at(curves.row(r, z, k), known); };
     std::tie(found_.effect_max(r, z, k), found_.effect_max_pose(r, z, k)) = largest(found_.effect);
     std::tie(found_.cancellation_max(r, z, k), found_.cancellation_max_pose(r, z, k)) = largest(found_.cancellation);
     found_.count(r, z, k) = known.size();
@@ -234,7 +234,7 @@ class Composer {
   EvaluationResult evaluation_;
   CouplingRows rows_;
   NotConverged policy_;
-  CouplingResult found_;
+  Result found_;
 };
 
 /// Reports the progress of the two stages of a run as one: first the table of errors, then the search for corners.
@@ -273,7 +273,7 @@ class TwoStages {
 };
 
 std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
-  const CouplingStudy& coupling = asked_of<CouplingStudy>(run.study.analysis);
+  const Options& coupling = asked_of<Options>(run.study.analysis);
   const ModelDescription& model = run.model.description();
   const CornerTable corners(coupling, model);
   Array<double, axis::Response, axis::Size> rounding = coupling_rounding(coupling, run.model);
@@ -287,8 +287,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   std::optional<WorstCases> worst;
   if (searches) worst = run_worst_cases(run, corners, rounding, stages.of_corners());
   if (!evaluation || worst.has_value() != searches || !run.makes_result()) return std::nullopt;
-  CouplingResult found =
-      coupling_result(*std::move(evaluation), coupling, model, run.study.not_converged, std::move(rounding));
+  Result found = coupling_result(*std::move(evaluation), coupling, model, run.study.not_converged, std::move(rounding));
   if (worst) add_worst_cases(*std::move(worst), corners, found);
   return StudyResult{std::move(found), std::nullopt, {}};
 }
@@ -297,8 +296,8 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
 WorkOutlook corner_work(const Study& study, const Model& model, const PoseSet& poses) {
   struct Trial {
     Trial(const Study& study, const Model& model, const PoseSet& poses)
-        : table(asked_of<CouplingStudy>(study.analysis), model.description()),
-          rounding(coupling_rounding(asked_of<CouplingStudy>(study.analysis), model)),
+        : table(asked_of<Options>(study.analysis), model.description()),
+          rounding(coupling_rounding(asked_of<Options>(study.analysis), model)),
           search(model, study.solver, poses, table, rounding) {}
 
     CornerTable table;
@@ -316,7 +315,7 @@ WorkOutlook corner_work(const Study& study, const Model& model, const PoseSet& p
 }
 
 Outlook coupling_outlook(const Study& study, const Model& model, const PoseSet& poses) {
-  const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
+  const Options& coupling = asked_of<Options>(study.analysis);
   const CouplingRows rows = coupling_rows(coupling, study.model());
   const ErrorTable table = coupling_table(coupling, study.model());
   const std::size_t solves = table.rows * poses.size();
@@ -373,7 +372,7 @@ std::vector<std::vector<std::size_t>> source_subsets(std::size_t sources) {
   return subsets;
 }
 
-CouplingRows coupling_rows(const CouplingStudy& study, const ModelDescription& model) {
+CouplingRows coupling_rows(const Options& study, const ModelDescription& model) {
   CouplingRows rows;
   rows.subsets = source_subsets(study.sources.size());
   rows.errors.resize(rows.subsets.size());
@@ -396,7 +395,7 @@ CouplingRows coupling_rows(const CouplingStudy& study, const ModelDescription& m
   return rows;
 }
 
-std::vector<FactorIndex> coupling_factors(const CouplingStudy& study, const ModelDescription& model) {
+std::vector<FactorIndex> coupling_factors(const Options& study, const ModelDescription& model) {
   std::vector<FactorIndex> factors;
   for (const ErrorSource& source : study.sources) {
     for (const ErrorBlock& block : error_blocks(source, study.pattern, model)) add_errors(block, factors);
@@ -404,7 +403,7 @@ std::vector<FactorIndex> coupling_factors(const CouplingStudy& study, const Mode
   return factors;
 }
 
-ErrorTable coupling_table(const CouplingStudy& study, const ModelDescription& model) {
+ErrorTable coupling_table(const Options& study, const ModelDescription& model) {
   const CouplingRows rows = coupling_rows(study, model);
   ErrorTable table{coupling_factors(study, model), {}, study.sizes() * rows.errors.size()};
   table.values.reserve(table.rows * table.factors.size());
@@ -421,12 +420,12 @@ ErrorTable coupling_table(const CouplingStudy& study, const ModelDescription& mo
   return table;
 }
 
-CouplingResult coupling_result(EvaluationResult evaluation, const CouplingStudy& study, const ModelDescription& model,
-                               NotConverged policy, Array<double, axis::Response, axis::Size> rounding) {
+Result coupling_result(EvaluationResult evaluation, const Options& study, const ModelDescription& model,
+                       NotConverged policy, Array<double, axis::Response, axis::Size> rounding) {
   return Composer(std::move(evaluation), study, model, policy, std::move(rounding))();
 }
 
-Array<double, axis::Response, axis::Size> coupling_rounding(const CouplingStudy& study, const Model& model) {
+Array<double, axis::Response, axis::Size> coupling_rounding(const Options& study, const Model& model) {
   const std::vector<double> of_responses = response_rounding(model);
   Array<double, axis::Response, axis::Size> rounding({of_responses.size(), study.sizes()});
   for (std::size_t r = 0; r < of_responses.size(); ++r) {
@@ -438,7 +437,7 @@ Array<double, axis::Response, axis::Size> coupling_rounding(const CouplingStudy&
   return rounding;
 }
 
-std::vector<std::size_t> responses_without_effect(const CouplingResult& found) {
+std::vector<std::size_t> responses_without_effect(const Result& found) {
   std::vector<std::size_t> list;
   for (std::size_t r = 0; r < found.effect_max.length<axis::Response>(); ++r) {
     bool is_constant_at_all = true;
@@ -459,9 +458,7 @@ std::vector<std::string> subset_names(std::span<const ErrorSource> sources) {
   return names;
 }
 
-constinit const Kind kCouplingKind{.study = kCouplingStudy,
-                                   .run = {run_study_of_kind, coupling_outlook, shards_by_pose},
-                                   .file = kCouplingFile,
-                                   .report = kCouplingReport};
+constinit const Kind kKind{
+    .study = kStudy, .run = {run_study_of_kind, coupling_outlook, shards_by_pose}, .file = kFile, .report = kReport};
 
-}  // namespace poesy
+}  // namespace poesy::coupling

@@ -15,7 +15,15 @@
 #include "engine/study/study.h"
 #include "engine/study/table_file.h"
 
-namespace poesy {
+namespace poesy::axis {
+
+using Size = Axis<"size">;      ///< Sizes of the errors.
+using Source = Axis<"source">;  ///< Sources of errors.
+using Subset = Axis<"subset">;  ///< Subsets of the sources, whose errors act together.
+
+}  // namespace poesy::axis
+
+namespace poesy::coupling {
 
 /// A source of errors: a named list of errors whose joint effect the study computes.
 struct ErrorSource {
@@ -48,7 +56,7 @@ enum class UnknownSigns {
 std::string_view name(UnknownSigns signs);  ///< The word for this choice in study files.
 
 /// The options of a coupling study.
-struct CouplingStudy {
+struct Options {
   std::vector<double> linear;        ///< [sizes] sizes of errors that are lengths, m; empty if no error is a length
   std::vector<double> angular;       ///< [sizes] sizes of errors that are angles, rad; empty if no error is an angle
   ErrorPattern pattern;              ///< which errors of each source are not zero, and which have the same sign
@@ -64,7 +72,7 @@ struct CouplingStudy {
 };
 
 /// The kind of study that computes the effects of error sources of fixed size, alone and together.
-extern const StudyKind kCouplingStudy;
+extern const StudyKind kStudy;
 
 /// Errors that always have the same sign, in the order of the model.
 using ErrorBlock = std::vector<FactorIndex>;
@@ -90,25 +98,19 @@ struct CouplingRows {
 };
 
 /// The rows of a study. Precondition: no error is in two sources.
-CouplingRows coupling_rows(const CouplingStudy& study, const ModelDescription& model);
+CouplingRows coupling_rows(const Options& study, const ModelDescription& model);
 
 /// The errors of all sources that the pattern does not exclude, in the order of the model.
-std::vector<FactorIndex> coupling_factors(const CouplingStudy& study, const ModelDescription& model);
+std::vector<FactorIndex> coupling_factors(const Options& study, const ModelDescription& model);
 
 /// The table of errors that is solved at every pose. Its rows are all rows of CouplingRows at the first size, then all
 /// at the second size, and so on. The errors of a row have their sizes, with positive sign; all others are 0. The
 /// columns are coupling_factors().
-ErrorTable coupling_table(const CouplingStudy& study, const ModelDescription& model);
-
-namespace axis {
-using Size = Axis<"size">;      ///< Sizes of the errors.
-using Source = Axis<"source">;  ///< Sources of errors.
-using Subset = Axis<"subset">;  ///< Subsets of the sources, whose errors act together.
-}  // namespace axis
+ErrorTable coupling_table(const Options& study, const ModelDescription& model);
 
 /// The effects of error sources alone and together, SI. coupling_result() defines each number. A number is NaN if it
 /// depends on a solve that does not count in statistics (counts()).
-struct CouplingResult {
+struct Result {
   /// A number for each response, size, subset of the sources and pose.
   using Curves = Array<double, axis::Response, axis::Size, axis::Subset, axis::Pose>;
   /// A number for each response, size and subset, such as the largest magnitude of one of the Curves over the poses.
@@ -166,7 +168,7 @@ struct CouplingResult {
 
 /// Whether the study searched for worst cases. Studies with UnknownSigns::sum, and results of version 0.2.0, have only
 /// first-order sums.
-inline bool has_worst_cases(const CouplingResult& found) { return !found.worst_case.empty(); }
+inline bool has_worst_cases(const Result& found) { return !found.worst_case.empty(); }
 
 /// Computes the effects of error sources alone and together (San et al. 2023, Sections 5.2.1 and 5.2.2), at each size
 /// and pose, for each subset S of the sources. The effect of errors is the response itself, so a response must be zero
@@ -194,22 +196,22 @@ inline bool has_worst_cases(const CouplingResult& found) { return !found.worst_c
 /// evaluation: result of run_evaluation() for coupling_table() of the study. A solve that does not count (see counts())
 /// makes every number that depends on it NaN, and is counted in `solves`. rounding: see coupling_rounding(). The arrays
 /// of worst cases are empty until add_worst_cases() sets them.
-CouplingResult coupling_result(EvaluationResult evaluation, const CouplingStudy& study, const ModelDescription& model,
-                               NotConverged policy, Array<double, axis::Response, axis::Size> rounding);
+Result coupling_result(EvaluationResult evaluation, const Options& study, const ModelDescription& model,
+                       NotConverged policy, Array<double, axis::Response, axis::Size> rounding);
 
 /// [responses x sizes] For each response and size, the magnitude up to which a response to errors of this size is
 /// rounding (stats/indices.h).
-Array<double, axis::Response, axis::Size> coupling_rounding(const CouplingStudy& study, const Model& model);
+Array<double, axis::Response, axis::Size> coupling_rounding(const Options& study, const Model& model);
 
 /// The names of the sources in each subset, joined: "FS", "T", "FS+T".
 std::vector<std::string> subset_names(std::span<const ErrorSource> sources);
 
 /// Indices of the responses on which no source has an effect larger than rounding at any size and pose with known
 /// effects. Precondition: the effect of some source is known.
-std::vector<std::size_t> responses_without_effect(const CouplingResult& found);
+std::vector<std::size_t> responses_without_effect(const Result& found);
 
 /// The coupling result in a stored result. Precondition: the result is of kind `coupling`.
-inline const CouplingResult& coupling_of(const StoredResult& result) { return found_of<CouplingResult>(result); }
+inline const Result& coupling_of(const StoredResult& result) { return found_of<Result>(result); }
 
 /// A table for each size and each response that a summary shows, with a row for each subset of the sources. Its columns
 /// are: the largest |effect| over the poses, with its pose; the largest root sum square, first-order sum, worst case
@@ -217,4 +219,4 @@ inline const CouplingResult& coupling_of(const StoredResult& result) { return fo
 /// pose. Notes below the last table explain the words.
 std::vector<Table> coupling_tables(const StoredResult& result, const TableOptions& options = {});
 
-}  // namespace poesy
+}  // namespace poesy::coupling

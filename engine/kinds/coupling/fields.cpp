@@ -7,63 +7,61 @@
 #include "engine/result/result_parts.h"
 #include "engine/stats/indices.h"
 
-namespace poesy {
+namespace poesy::coupling {
 namespace {
 
-const Group<CouplingResult> kCoupling{
+const Group<Result> kCoupling{
     "/coupling",
     "Single and coupled error sources (San et al. 2023, Section 5.2)",
     {},
     {},
-    {{"effect", &CouplingResult::effect, kResponseUnit, "All errors of the subset's sources at once"},
-     {"sum", &CouplingResult::sum, kResponseUnit, "Sum over the sources of the effect of each alone"},
-     {"interaction", &CouplingResult::interaction, kResponseUnit, "effect - sum"},
-     {"first_order_sum", &CouplingResult::first_order_sum, kResponseUnit,
+    {{"effect", &Result::effect, kResponseUnit, "All errors of the subset's sources at once"},
+     {"sum", &Result::sum, kResponseUnit, "Sum over the sources of the effect of each alone"},
+     {"interaction", &Result::interaction, kResponseUnit, "effect - sum"},
+     {"first_order_sum", &Result::first_order_sum, kResponseUnit,
       "Sum over the sources' blocks of |effect of the block alone|; errors of a block move together",
       Presence::where_computed},
-     {"worst_case", &CouplingResult::worst_case, kResponseUnit,
+     {"worst_case", &Result::worst_case, kResponseUnit,
       "Largest |response| that was found with either sign of each block: the signs of the first-order sum solved, then "
       "block by block until no flip is worse; no bound. NaN where no combination of signs is solved",
       Presence::where_computed},
-     {"root_sum_square", &CouplingResult::root_sum_square, kResponseUnit, "Root of the sum of the squares of these"},
-     {"cancellation", &CouplingResult::cancellation, "1",
+     {"root_sum_square", &Result::root_sum_square, kResponseUnit, "Root of the sum of the squares of these"},
+     {"cancellation", &Result::cancellation, "1",
       "1 - |sum| / sum of |effect of a source|: 0 no source opposes another, 1 they cancel"},
-     {"rounding", &CouplingResult::rounding, kResponseUnit,
+     {"rounding", &Result::rounding, kResponseUnit,
       "Up to this an effect of errors of the size cannot be told from the rounding of solves",
       Presence::where_computed},
-     {"corners", &CouplingResult::corners, "1", "Combinations of signs that were tried for worst_case",
+     {"corners", &Result::corners, "1", "Combinations of signs that were tried for worst_case",
       Presence::where_computed},
-     {"unsolved_corners", &CouplingResult::unsolved_corners, "1",
+     {"unsolved_corners", &Result::unsolved_corners, "1",
       "Of these, those that have no solution: machines that cannot be assembled", Presence::where_computed},
-     {"count", &CouplingResult::count, "1", "Poses that count: those where all that the subset rests on is solved"},
-     {"effect_max", &CouplingResult::effect_max, kResponseUnit, "Largest |effect| over the poses that count"},
-     {"effect_max_pose", &CouplingResult::effect_max_pose, "1",
-      "First pose of the largest |effect|; -1: there is none"},
-     {"interaction_max", &CouplingResult::interaction_max, kResponseUnit,
-      "Largest |interaction| over the poses that count"},
-     {"first_order_sum_max", &CouplingResult::first_order_sum_max, kResponseUnit,
+     {"count", &Result::count, "1", "Poses that count: those where all that the subset rests on is solved"},
+     {"effect_max", &Result::effect_max, kResponseUnit, "Largest |effect| over the poses that count"},
+     {"effect_max_pose", &Result::effect_max_pose, "1", "First pose of the largest |effect|; -1: there is none"},
+     {"interaction_max", &Result::interaction_max, kResponseUnit, "Largest |interaction| over the poses that count"},
+     {"first_order_sum_max", &Result::first_order_sum_max, kResponseUnit,
       "Largest first-order sum over the poses that count", Presence::where_computed},
-     {"worst_case_max", &CouplingResult::worst_case_max, kResponseUnit, "Largest worst case over all poses",
+     {"worst_case_max", &Result::worst_case_max, kResponseUnit, "Largest worst case over all poses",
       Presence::where_computed},
-     {"worst_case_max_pose", &CouplingResult::worst_case_max_pose, "1",
+     {"worst_case_max_pose", &Result::worst_case_max_pose, "1",
       "First pose of the largest worst case; -1: there is none", Presence::where_computed},
-     {"root_sum_square_max", &CouplingResult::root_sum_square_max, kResponseUnit,
+     {"root_sum_square_max", &Result::root_sum_square_max, kResponseUnit,
       "Largest root sum square over the poses that count"},
-     {"opposed_share", &CouplingResult::opposed_share, "1",
+     {"opposed_share", &Result::opposed_share, "1",
       "Share of the poses that count where |sum| is below the largest |effect of a source|"},
-     {"cancellation_max", &CouplingResult::cancellation_max, "1", "Largest cancellation over the poses that count"},
-     {"cancellation_max_pose", &CouplingResult::cancellation_max_pose, "1",
+     {"cancellation_max", &Result::cancellation_max, "1", "Largest cancellation over the poses that count"},
+     {"cancellation_max_pose", &Result::cancellation_max_pose, "1",
       "First pose of the largest cancellation; -1: there is none"},
-     {"worst_case_signs", &CouplingResult::worst_case_signs, "1",
+     {"worst_case_signs", &Result::worst_case_signs, "1",
       "Sign of each error at the largest worst case; 0 where the error is zero", Presence::where_computed},
-     {"unsolved_pose", &CouplingResult::unsolved_pose, "1",
+     {"unsolved_pose", &Result::unsolved_pose, "1",
       "First pose with a combination of signs that has no solution; -1: there is none", Presence::where_computed},
-     {"unsolved_signs", &CouplingResult::unsolved_signs, "1",
+     {"unsolved_signs", &Result::unsolved_signs, "1",
       "Sign of each error of the first such combination; 0 where the error is zero", Presence::where_computed}}};
 
-const Fields<CouplingResult> kSizes{
-    {"size_linear", &CouplingResult::linear, "m", "Size of errors that are lengths; NaN where there is none"},
-    {"size_angular", &CouplingResult::angular, "rad", "Size of errors that are angles; NaN where there is none"}};
+const Fields<Result> kSizes{
+    {"size_linear", &Result::linear, "m", "Size of errors that are lengths; NaN where there is none"},
+    {"size_angular", &Result::angular, "rad", "Size of errors that are angles; NaN where there is none"}};
 
 /// [subsets x sources] 1 if the source is in the subset, otherwise 0.
 std::vector<std::uint8_t> members(std::size_t sources) {
@@ -77,7 +75,7 @@ std::vector<std::uint8_t> members(std::size_t sources) {
 /// Writes to the result file, for each error, the index of its source and the index of its block in this source. The
 /// errors of a block have the same sign.
 void add_membership(ResultBuilder& result, const Study& study) {
-  const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
+  const Options& coupling = asked_of<Options>(study.analysis);
   std::map<FactorIndex, std::pair<std::size_t, std::size_t>> places;
   for (std::size_t s = 0; s < coupling.sources.size(); ++s) {
     const auto blocks = error_blocks(coupling.sources[s], coupling.pattern, study.model());
@@ -96,7 +94,7 @@ void add_membership(ResultBuilder& result, const Study& study) {
 }
 
 /// Writes to the result file the sizes of the errors, the sources in each subset, and the source of each error.
-void add_choices(ResultBuilder& result, const Study& study, const CouplingResult& found) {
+void add_choices(ResultBuilder& result, const Study& study, const Result& found) {
   write_fields(result, "/coupling", kSizes, found);
   result.add("/coupling/subset_sources", {"subset", "source"}, members(found.sources.size()),
              {"1", "1: the source is in the subset"});
@@ -109,7 +107,7 @@ void add_choices(ResultBuilder& result, const Study& study, const CouplingResult
 using SubsetLines = AxisLayout<axis::Size, axis::Subset, axis::Pose>;
 
 /// Appends columns with the sizes of the errors to the table.
-void append_size_columns(CsvTable& table, const CouplingResult& found, const SubsetLines& lines) {
+void append_size_columns(CsvTable& table, const Result& found, const SubsetLines& lines) {
   const auto append = [&](std::string heading, const Array<double, axis::Size>& sizes) {
     table.columns.push_back(
         {std::move(heading), [&sizes, lines](std::size_t line) { return sizes(lines.positions(line)[0]); }});
@@ -120,7 +118,7 @@ void append_size_columns(CsvTable& table, const CouplingResult& found, const Sub
 
 /// A table with `repeated` lines for each size and subset, and with columns for the subset and the sizes.
 CsvTable subset_table(const StoredResult& result, const std::string& name, std::size_t repeated) {
-  const CouplingResult& found = coupling_of(result);
+  const Result& found = coupling_of(result);
   const SubsetLines lines({found.size_names.size(), found.subsets.size(), repeated});
   CsvTable table{name,
                  {"subset", [&found, lines](std::size_t line) { return found.subsets[lines.positions(line)[1]]; }},
@@ -133,10 +131,10 @@ CsvTable subset_table(const StoredResult& result, const std::string& name, std::
 /// because it follows from effect and interaction.
 template <class AnArray>
 void append_response_columns(CsvTable& table, const StoredResult& result) {
-  const CouplingResult& found = coupling_of(result);
+  const Result& found = coupling_of(result);
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
     const NamedUnit& response = result.responses[r];
-    for (const FieldRow<CouplingResult>& field : kCoupling.fields) {
+    for (const FieldRow<Result>& field : kCoupling.fields) {
       if (field.axes != AnArray::axis_names() || field.name == "sum") continue;
       if (field.name.starts_with("worst_case") && !has_worst_cases(found)) continue;
       const std::string name = response.name + "_" + (field.name == "count" ? "poses" : field.name);
@@ -148,18 +146,18 @@ void append_response_columns(CsvTable& table, const StoredResult& result) {
 
 CsvTable curve_table(const StoredResult& result) {
   const std::size_t poses = result.poses.size();
-  const CouplingResult& found = coupling_of(result);
+  const Result& found = coupling_of(result);
   CsvTable table = subset_table(result, "coupling", poses);
   table.columns.push_back({"pose", [poses](std::size_t line) { return to_number(line % poses); }});
   if (!result.time.empty()) {
     table.columns.push_back({"time [s]", [&, poses](std::size_t line) { return result.time[line % poses]; }});
   }
-  for (const FieldRow<CouplingResult>& field : kCoupling.fields) {
+  for (const FieldRow<Result>& field : kCoupling.fields) {
     if (field.axes == found.corners.axis_names() && has_worst_cases(found)) {
       table.columns.push_back(field_column(field.name, field, found));
     }
   }
-  append_response_columns<CouplingResult::Curves>(table, result);
+  append_response_columns<Result::Curves>(table, result);
   return table;
 }
 
@@ -168,7 +166,7 @@ CsvTable corner_table(const StoredResult& result) {
   const std::size_t errors = result.factors.size();
   CsvTable table = subset_table(result, "coupling_corners", errors);
   table.columns.push_back({"error", [errors](std::size_t line) { return static_cast<double>(line % errors); }});
-  const CouplingResult& found = coupling_of(result);
+  const Result& found = coupling_of(result);
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
     table.columns.push_back(list_column(result.responses[r].name, found.worst_case_signs.row(r)));
   }
@@ -178,7 +176,7 @@ CsvTable corner_table(const StoredResult& result) {
 
 CsvTable solve_table(const StoredResult& result) {
   const std::size_t poses = result.poses.size();
-  const CouplingResult& found = coupling_of(result);
+  const Result& found = coupling_of(result);
   CsvTable table{"not_converged",
                  {"pose", [poses](std::size_t line) { return std::to_string(line % poses); }},
                  found.solves.size()};
@@ -188,7 +186,7 @@ CsvTable solve_table(const StoredResult& result) {
 }
 
 void write(ResultBuilder& result, const Study& study, std::any& any) {
-  auto& found = std::any_cast<CouplingResult&>(any);
+  auto& found = std::any_cast<Result&>(any);
   add_names(result, study, study.analysis.factors);
   result.add_axis("size", found.size_names, {"1", "Size of the errors"});
   result.add_axis("source", found.sources, {"1", "Name of the source of errors"});
@@ -200,7 +198,7 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
 
 /// Completes a result that was read from a file of version 0.2.0. In such a file, `worst_case` is the first-order sum
 /// and corners are missing. The rounding is computed from the sizes of the errors.
-void read_older(CouplingResult& found) {
+void read_older(Result& found) {
   if (!found.first_order_sum.empty()) {
     const bool searched = has_worst_cases(found);
     for (const bool lacks : {found.worst_case_max.empty(), found.corners.empty(), found.unsolved_corners.empty(),
@@ -225,7 +223,7 @@ void read_older(CouplingResult& found) {
 }
 
 void read(const h5::File& file, StoredResult& result) {
-  CouplingResult found;
+  Result found;
   found.size_names = file.read<std::string>("/size");
   found.sources = file.read<std::string>("/source");
   found.subsets = file.read<std::string>("/subset");
@@ -240,7 +238,7 @@ void read(const h5::File& file, StoredResult& result) {
 void append_tables(CsvTables& tables, const StoredResult& result) {
   tables.push_back(curve_table(result));
   CsvTable summary = subset_table(result, "coupling_summary", 1);
-  append_response_columns<CouplingResult::Summary<double>>(summary, result);
+  append_response_columns<Result::Summary<double>>(summary, result);
   tables.push_back(std::move(summary));
   if (has_worst_cases(coupling_of(result))) tables.push_back(corner_table(result));
   tables.push_back(solve_table(result));
@@ -248,6 +246,6 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
 
 }  // namespace
 
-constinit const FileKind kCouplingFile{.write = write, .read = read, .append_tables = append_tables};
+constinit const FileKind kFile{.write = write, .read = read, .append_tables = append_tables};
 
-}  // namespace poesy
+}  // namespace poesy::coupling

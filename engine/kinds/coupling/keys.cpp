@@ -9,11 +9,10 @@
 #include "engine/study/study.h"
 #include "engine/study/study_kind.h"
 
-namespace poesy {
+namespace poesy::coupling {
 namespace {
 
-constexpr std::array<std::string_view, 6> kCouplingKeys{"linear",     "angular",    "limbs",
-                                                        "components", "worst_case", "sources"};
+constexpr std::array<std::string_view, 6> kKeys{"linear", "angular", "limbs", "components", "worst_case", "sources"};
 
 using PatternChoice = ErrorPattern::Choice;
 
@@ -28,7 +27,7 @@ PatternChoice read_choice(const StudyValue& value) {
 
 void read_limbs(const StudyValue& value, Study& study, const Reading&) {
   const ModelDescription& model = study.model();
-  ErrorPattern& pattern = asked_of<CouplingStudy>(study.analysis).pattern;
+  ErrorPattern& pattern = asked_of<Options>(study.analysis).pattern;
   if (value.is_text()) {
     pattern.limbs = read_choice(value);
     return;
@@ -45,7 +44,7 @@ void read_limbs(const StudyValue& value, Study& study, const Reading&) {
 }
 
 void read_components(const StudyValue& value, Study& study, const Reading&) {
-  ErrorPattern& pattern = asked_of<CouplingStudy>(study.analysis).pattern;
+  ErrorPattern& pattern = asked_of<Options>(study.analysis).pattern;
   if (value.is_text()) {
     pattern.components = read_choice(value);
     return;
@@ -130,7 +129,7 @@ void read_sources(const StudyValue& value, Study& study, const Reading&) {
                    ", but there must be " + std::to_string(kFewestSources) + " to " + std::to_string(kMostSources),
                "group factors into fewer or more sources");
   }
-  CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
+  Options& coupling = asked_of<Options>(study.analysis);
   for (const StudyValue& one : list) {
     coupling.sources.push_back(read_source(one.section(), coupling.sources, coupling.pattern, study));
   }
@@ -138,7 +137,7 @@ void read_sources(const StudyValue& value, Study& study, const Reading&) {
 
 std::string sources_lines(const Study& study) {
   std::string text;
-  for (const ErrorSource& source : asked_of<CouplingStudy>(study.analysis).sources) {
+  for (const ErrorSource& source : asked_of<Options>(study.analysis).sources) {
     text += fmt::format("\n[[analysis.sources]]\nname = {}\nfactors = {}\n", in_quotes(source.name),
                         factors_text(source.factors, study.model()));
   }
@@ -148,9 +147,9 @@ std::string sources_lines(const Study& study) {
 using Sizes = std::vector<double>;
 
 /// The key for the sizes of errors of this dimension.
-KeyValue<Study> sizes_at(Dimension dimension, Sizes CouplingStudy::*member) {
+KeyValue<Study> sizes_at(Dimension dimension, Sizes Options::*member) {
   const auto read = [=](const StudyValue& value, Study& study) {
-    Sizes& sizes = asked_of<CouplingStudy>(study.analysis).*member;
+    Sizes& sizes = asked_of<Options>(study.analysis).*member;
     for (const StudyValue& size : value.list()) sizes.push_back(size.positive_quantity(dimension));
     if (sizes.empty()) value.fail("is empty", "write at least one size");
   };
@@ -160,7 +159,7 @@ KeyValue<Study> sizes_at(Dimension dimension, Sizes CouplingStudy::*member) {
 template <Dimension kDimension>
 std::string sizes_line(const Study& study) {
   std::vector<std::string> sizes;
-  for (const double size : asked_of<CouplingStudy>(study.analysis).sizes_of(kDimension)) {
+  for (const double size : asked_of<Options>(study.analysis).sizes_of(kDimension)) {
     sizes.push_back(exact_value(size, kDimension));
   }
   return sizes.empty() ? "" : fmt::format("{} = {}\n", error_kind(kDimension), list_text(sizes));
@@ -202,18 +201,18 @@ std::string choice_text(PatternChoice choice, const std::string& some) {
 }
 
 std::string limbs_text(const Study& study) {
-  const ErrorPattern& pattern = asked_of<CouplingStudy>(study.analysis).pattern;
+  const ErrorPattern& pattern = asked_of<Options>(study.analysis).pattern;
   return choice_text(pattern.limbs, std::to_string(pattern.limb));
 }
 
 std::string components_text(const Study& study) {
-  const ErrorPattern& pattern = asked_of<CouplingStudy>(study.analysis).pattern;
+  const ErrorPattern& pattern = asked_of<Options>(study.analysis).pattern;
   std::vector<std::string> axes;
   for (const std::string& axis : pattern.axes) axes.push_back(in_quotes(axis));
   return choice_text(pattern.components, list_text(axes));
 }
 
-void require_sizes(const StudySection& analysis, Dimension dimension, const CouplingStudy& study,
+void require_sizes(const StudySection& analysis, Dimension dimension, const Options& study,
                    const ModelDescription& model) {
   const std::string key(error_kind(dimension));
   const std::vector<FactorIndex> factors = coupling_factors(study, model);
@@ -228,7 +227,7 @@ void require_sizes(const StudySection& analysis, Dimension dimension, const Coup
 
 /// Refuses sizes of a dimension (lengths or angles) if no error of the sources has this dimension. Also considers
 /// errors that the pattern leaves at zero.
-void refuse_idle_sizes(const StudySection& analysis, Dimension dimension, const CouplingStudy& study,
+void refuse_idle_sizes(const StudySection& analysis, Dimension dimension, const Options& study,
                        const ModelDescription& model) {
   const auto value = analysis.find(error_kind(dimension));
   if (!value) return;
@@ -241,7 +240,7 @@ void refuse_idle_sizes(const StudySection& analysis, Dimension dimension, const 
               "remove it");
 }
 
-void require_equal_numbers(const StudyValue& angular, const CouplingStudy& study) {
+void require_equal_numbers(const StudyValue& angular, const Options& study) {
   if (study.linear.size() == study.angular.size()) return;
   const auto sizes = [](std::size_t count) { return std::to_string(count) + (count == 1 ? " size" : " sizes"); };
   angular.fail("has " + sizes(study.angular.size()) + ", but linear has " + sizes(study.linear.size()),
@@ -250,7 +249,7 @@ void require_equal_numbers(const StudyValue& angular, const CouplingStudy& study
 
 /// Throws InputError if the sizes at two positions of the lists `linear` and `angular` are equal, for lengths as well
 /// as for angles. value: the key `linear` or `angular`, to which the message points.
-void require_different_runs(const StudyValue& value, const CouplingStudy& study) {
+void require_different_runs(const StudyValue& value, const Options& study) {
   const auto same = [](const std::vector<double>& sizes, std::size_t a, std::size_t b) {
     return sizes.empty() || sizes[a] == sizes[b];
   };
@@ -265,7 +264,7 @@ void require_different_runs(const StudyValue& value, const CouplingStudy& study)
 
 /// Sets the sources that the model lists, if the study lists none. Throws InputError if an error of a source has no
 /// size, or if sizes are stated for a dimension that no error has.
-void complete_sources(const StudySection& analysis, const ModelDescription& model, CouplingStudy& study) {
+void complete_sources(const StudySection& analysis, const ModelDescription& model, Options& study) {
   if (!analysis.find("sources")) study.sources = usual_sources(analysis, model, study.pattern);
   for (const Dimension dimension : {Dimension::length, Dimension::angle}) {
     require_sizes(analysis, dimension, study, model);
@@ -278,7 +277,7 @@ void complete_sources(const StudySection& analysis, const ModelDescription& mode
 void complete_coupling(Study& whole, const Reading& reading) {
   const StudySection analysis = reading.root.section("analysis");
   const ModelDescription& model = whole.model();
-  CouplingStudy& study = asked_of<CouplingStudy>(whole.analysis);
+  Options& study = asked_of<Options>(whole.analysis);
   const auto linear = analysis.find("linear");
   const auto angular = analysis.find("angular");
   if (linear && angular) require_equal_numbers(*angular, study);
@@ -290,14 +289,14 @@ void complete_coupling(Study& whole, const Reading& reading) {
 std::vector<StudyRow> coupling_key_rows() {
   return {
       StudyRow{.name = "linear",
-               .value = sizes_at(Dimension::length, &CouplingStudy::linear),
+               .value = sizes_at(Dimension::length, &Options::linear),
                .meaning =
                    "Sizes of lengths. Each gives a run of its own, in which all lengths have this size. Required where "
                    "a source has lengths; as many as of angular, if there are both.",
                .lines = sizes_line<Dimension::length>,
                .shown = shown_sizes<Dimension::length>},
       StudyRow{.name = "angular",
-               .value = sizes_at(Dimension::angle, &CouplingStudy::angular),
+               .value = sizes_at(Dimension::angle, &Options::angular),
                .meaning = "Sizes of angles, likewise.",
                .lines = sizes_line<Dimension::angle>,
                .shown = shown_sizes<Dimension::angle>},
@@ -321,7 +320,7 @@ std::vector<StudyRow> coupling_key_rows() {
                 "them one by one until no flip is worse; some solves for each error and response at each pose, "
                 "size and subset"},
                {UnknownSigns::sum, "no worst case, only the first-order sum, which takes no solves"}},
-              &CouplingStudy::worst_case)),
+              &Options::worst_case)),
           .meaning = "How the worst case is found where signs are not known."},
       StudyRow{.name = "sources",
                .value = {.type = "list of tables"},
@@ -349,7 +348,7 @@ StudyTables source_tables() {
 }
 
 void check_sizes(const StudySection& analysis, const Study& study, const Model& model) {
-  const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
+  const Options& coupling = asked_of<Options>(study.analysis);
   for (const FactorIndex factor : study.analysis.factors) {
     const Dimension dimension = model.description().factors[factor.value].dimension;
     const Sizes& sizes = coupling.sizes_of(dimension);
@@ -367,21 +366,21 @@ std::optional<Refusal> no_sources(const ModelDescription& model) {
 }
 
 AtPose coupling_at_pose(const Study& study) {
-  const CouplingStudy& coupling = asked_of<CouplingStudy>(study.analysis);
+  const Options& coupling = asked_of<Options>(study.analysis);
   const auto sets = static_cast<double>(coupling.sizes() * coupling_rows(coupling, study.model()).errors.size());
   return {sets, "sizes times sets of sources", sets, "sizes times sets of sources"};
 }
 
 }  // namespace
 
-const StudyKind kCouplingStudy{.name = "coupling",
-                               .asks = "what sources of errors do one by one and together",
-                               .keys = kCouplingKeys,
-                               .rows = coupling_key_rows,
-                               .tables = source_tables,
-                               .no_template = no_sources,
-                               .complete = complete_coupling,
-                               .check_errors = check_sizes,
-                               .at_pose = coupling_at_pose};
+const StudyKind kStudy{.name = "coupling",
+                       .asks = "what sources of errors do one by one and together",
+                       .keys = kKeys,
+                       .rows = coupling_key_rows,
+                       .tables = source_tables,
+                       .no_template = no_sources,
+                       .complete = complete_coupling,
+                       .check_errors = check_sizes,
+                       .at_pose = coupling_at_pose};
 
-}  // namespace poesy
+}  // namespace poesy::coupling

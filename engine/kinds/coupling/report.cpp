@@ -11,7 +11,7 @@
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
 
-namespace poesy {
+namespace poesy::coupling {
 namespace {
 
 Cell place_cell(const StoredResult& result, bool known, std::int64_t pose) {
@@ -23,7 +23,7 @@ Cell pose_cell(bool known, std::int64_t pose) {
 }
 
 std::vector<Cell> subset_row(const StoredResult& result, std::size_t r, std::size_t z, std::size_t k) {
-  const CouplingResult& found = coupling_of(result);
+  const Result& found = coupling_of(result);
   const double rounding = found.rounding(r, z);
   const auto cell = [&](double value) {
     Cell shown = number_cell(value / display(result.responses[r]).si, 5);
@@ -59,7 +59,7 @@ std::string corner_text(const StoredResult& result, std::span<const std::int64_t
 /// A text on the worst case of all sources together, with its pose and the signs of the errors; empty if no worst case
 /// was found, or if it is only rounding.
 std::string worst_corner_text(const StoredResult& result, std::size_t z, std::size_t r) {
-  const CouplingResult& found = coupling_of(result);
+  const Result& found = coupling_of(result);
   const std::size_t all = found.subsets.size() - 1;
   if (!has_worst_cases(found) || !(found.worst_case_max(r, z, all) > found.rounding(r, z))) return {};
   return fmt::format("worst case of {}: {}, with {}", found.subsets.back(),
@@ -69,7 +69,7 @@ std::string worst_corner_text(const StoredResult& result, std::size_t z, std::si
 
 /// A text on the number of corners without a solution, and on the first such corner; empty if there is none.
 std::string unsolved_text(const StoredResult& result) {
-  const CouplingResult& found = coupling_of(result);
+  const Result& found = coupling_of(result);
   const auto sum = [](const auto& counts) { return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}); };
   const auto first = std::ranges::find_if(found.unsolved_pose, [](std::int64_t pose) { return pose >= 0; });
   if (first == found.unsolved_pose.end()) return {};
@@ -82,7 +82,7 @@ std::string unsolved_text(const StoredResult& result) {
 }
 
 Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
-  const CouplingResult& found = coupling_of(result);
+  const Result& found = coupling_of(result);
   const NamedUnit& response = result.responses[r];
   const std::string_view unit = display(response).name;
   Table table{
@@ -108,7 +108,7 @@ Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
 /// Whether there is a response of the summary that this source alone changes by no more than rounding, at all poses and
 /// sizes.
 bool does_nothing(const StoredResult& result, const std::string& source) {
-  const CouplingResult& found = coupling_of(result);
+  const Result& found = coupling_of(result);
   const auto k = static_cast<std::size_t>(std::ranges::find(found.subsets, source) - found.subsets.begin());
   if (k == found.subsets.size()) return false;
   return std::ranges::any_of(result.signed_headline, [&](std::size_t r) {
@@ -131,7 +131,7 @@ constexpr std::string_view kWorstCase =
     "or sizes in between, may do more";
 
 std::vector<std::string> notes(const StoredResult& result) {
-  const CouplingResult& found = coupling_of(result);
+  const Result& found = coupling_of(result);
   std::vector<std::string> list{
       fmt::format("{} of errors, alone and together; largest values over {}",
                   counted(found.sources.size(), "source", "sources"), counted(found.poses(), "pose", "poses")),
@@ -155,7 +155,7 @@ std::vector<std::string> notes(const StoredResult& result) {
 
 /// The responses and poses that the figures show. Norms are left out: they have no sign and cannot show cancellation.
 ShownCells cells(const StoredResult& result) {
-  const CouplingResult& found = coupling_of(result);
+  const Result& found = coupling_of(result);
   return shown_cells(result, found.size_names.size() * (2 * found.subsets.size() + 3), result.signed_headline);
 }
 
@@ -224,7 +224,7 @@ class Curves {
 
   /// Adds a curve over the poses to the page and returns its name. Values are in display units, cancellations in
   /// percent.
-  ArrayName curve(std::string_view what, const CouplingResult::Curves& values, std::size_t r, std::size_t z,
+  ArrayName curve(std::string_view what, const Result::Curves& values, std::size_t r, std::size_t z,
                   std::size_t k) const {
     const double unit = what == "cancellation" ? 0.01 : display(result_.responses[r]).si;
     return figures_.add(fmt::format("{}/{}/{}/{}", what, r, z, k), values.row(r, z, k), unit);
@@ -232,15 +232,15 @@ class Curves {
 
   /// Adds to `list` the curves of all subsets with several sources, except the subset of all sources. r: response; z:
   /// size.
-  void add_subsets(std::vector<Series>& list, std::string_view what, const CouplingResult::Curves& values,
-                   std::size_t r, std::size_t z) const {
+  void add_subsets(std::vector<Series>& list, std::string_view what, const Result::Curves& values, std::size_t r,
+                   std::size_t z) const {
     for (std::size_t k = sources(); k + 1 < found_.subsets.size(); ++k) {
       list.push_back({subset(k), curve(what, values, r, z, k)});
     }
   }
 
   /// The curve of all sources together, then the curves of the other subsets with several sources.
-  std::vector<Series> subset_series(std::string_view what, const CouplingResult::Curves& values, std::size_t r,
+  std::vector<Series> subset_series(std::string_view what, const Result::Curves& values, std::size_t r,
                                     std::size_t z) const {
     std::vector<Series> list{{subset(last()), curve(what, values, r, z, last())}};
     add_subsets(list, what, values, r, z);
@@ -254,8 +254,7 @@ class Curves {
     for (std::size_t k = 0; k < sources(); ++k) {
       list.push_back({subset(k) + " alone", curve("effect", found_.effect, r, z, k)});
     }
-    const auto add = [&](std::string label, std::string_view what, const CouplingResult::Curves& values,
-                         std::string style) {
+    const auto add = [&](std::string label, std::string_view what, const Result::Curves& values, std::string style) {
       list.push_back(
           {.label = std::move(label), .value = curve(what, values, r, z, last()), .style = std::move(style)});
     };
@@ -271,7 +270,7 @@ class Curves {
   }
 
   const StoredResult& result_;
-  const CouplingResult& found_;
+  const Result& found_;
   const PoseFigures& figures_;
 };
 
@@ -310,12 +309,12 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
 }
 
 SolveTally tally(const StoredResult& result) {
-  const CouplingResult& found = coupling_of(result);
+  const Result& found = coupling_of(result);
   return {"size", found.size_names, result.poses.size(), {found.solves.begin(), found.solves.end()}};
 }
 
 /// The names of subsets at each size: "FS+T at 0.1 mm".
-std::vector<std::string> sized_subsets(const CouplingResult& coupling) {
+std::vector<std::string> sized_subsets(const Result& coupling) {
   std::vector<std::string> list;
   for (const std::string& size : coupling.size_names) {
     for (const std::string& subset : coupling.subsets) list.push_back(fmt::format("{} at {}", subset, size));
@@ -325,7 +324,7 @@ std::vector<std::string> sized_subsets(const CouplingResult& coupling) {
 
 /// The summary at the top of the report, for the last size (which the page shows) and the first response.
 Answer answer(const StoredResult& result) {
-  const CouplingResult& found = coupling_of(result);
+  const Result& found = coupling_of(result);
   if (found.subsets.empty() || found.size_names.empty() || result.signed_headline.empty()) return {};
   const std::size_t r = varying_first(result, result.signed_headline).front();
   const std::size_t z = found.size_names.size() - 1;
@@ -362,7 +361,7 @@ Answer answer(const StoredResult& result) {
 /// The figure of merit by which two results are compared: the largest effect of all sources together at the last size.
 /// Its interval has no width, because errors are not drawn.
 std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
-  const CouplingResult& found = coupling_of(result);
+  const Result& found = coupling_of(result);
   if (name.empty() || found.effect_max.empty()) return {};
   const std::size_t r = response_named(result, name);
   const NamedUnit& response = result.responses[r];
@@ -375,7 +374,7 @@ std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
 }
 
 Comparable comparable(const StoredResult& result, const StoredResult&) {
-  const CouplingResult& found = coupling_of(result);
+  const Result& found = coupling_of(result);
   Comparable all = comparable_by_response(result, "subset", sized_subsets(found));
   add_quantity(all, result, "largest effect over the poses", "effect_max",
                [&](std::size_t r, std::size_t n) { return found.effect_max.row(r)[n]; });
@@ -395,7 +394,7 @@ std::vector<Table> coupling_tables(const StoredResult& result, const TableOption
   return tables;
 }
 
-constinit const ReportKind kCouplingReport{
+constinit const ReportKind kReport{
     .tally = tally,
     .tables = coupling_tables,
     .merits = merits,
@@ -405,4 +404,4 @@ constinit const ReportKind kCouplingReport{
     .page = add_page,
     .comparable = comparable};
 
-}  // namespace poesy
+}  // namespace poesy::coupling

@@ -9,7 +9,7 @@
 #include "engine/base/nan.h"
 #include "engine/run/unit_fold.h"
 
-namespace poesy {
+namespace poesy::coupling {
 namespace {
 
 /// Reads or writes the signs of a corner: one for each block of errors, or none if there is no corner. blocks: number
@@ -171,7 +171,7 @@ std::optional<WorstCases> run_worst_cases(const StudyRun& run, const CornerTable
   return fold_units(CornerJob{run, table, rounding}, options);
 }
 
-void add_worst_cases(WorstCases found, const CornerTable& table, CouplingResult& result) {
+void add_worst_cases(WorstCases found, const CornerTable& table, Result& result) {
   POESY_EXPECTS(found.value.lengths() == result.first_order_sum.lengths());
   const auto [responses, sizes, subsets] = found.worst.lengths();
   const std::size_t errors = table.factors.size();
@@ -201,4 +201,4 @@ void add_worst_cases(WorstCases found, const CornerTable& table, CouplingResult&
   }
 }
 
-}  // namespace poesy
+}  // namespace poesy::coupling

@@ -9,7 +9,7 @@
 #include "engine/kinds/coupling/coupling.h"
 #include "engine/kinds/kind.h"
 
-namespace poesy {
+namespace poesy::coupling {
 
 /// The worst corners at each pose and over all poses.
 struct WorstCases {
@@ -20,12 +20,12 @@ struct WorstCases {
     Signs signs = {};        ///< signs at the corner; empty if no corner was found
   };
 
-  CouplingResult::Curves value;  ///< largest |response| over the solved corners at a pose, SI; NaN if none was solved
+  Result::Curves value;  ///< largest |response| over the solved corners at a pose, SI; NaN if none was solved
   Array<std::uint64_t, axis::Size, axis::Subset, axis::Pose> tried;     ///< number of corners that were tried
   Array<std::uint64_t, axis::Size, axis::Subset, axis::Pose> unsolved;  ///< number of tried corners without a solution
   Array<SolveCounts, axis::Size, axis::Pose> solves;                    ///< how the solves of all corners ended
   /// Corner with the largest value over the poses; of equal values, the first pose.
-  CouplingResult::Summary<Place> worst;
+  Result::Summary<Place> worst;
   Array<Place, axis::Size, axis::Subset> first_unsolved;  ///< first corner that was not solved, over the poses
 };
 
@@ -36,6 +36,6 @@ std::optional<WorstCases> run_worst_cases(const StudyRun& run, const CornerTable
                                           const RunOptions& options);
 
 /// Sets the worst cases in the result of the same study, and adds the solves of corners to its counts.
-void add_worst_cases(WorstCases found, const CornerTable& table, CouplingResult& result);
+void add_worst_cases(WorstCases found, const CornerTable& table, Result& result);
 
-}  // namespace poesy
+}  // namespace poesy::coupling

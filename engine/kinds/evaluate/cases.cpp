@@ -15,7 +15,7 @@
 #include "engine/run/result.h"
 #include "engine/run/rows_within.h"
 
-namespace poesy {
+namespace poesy::evaluate {
 namespace {
 
 constexpr Pairing kPairing = Pairing::every_pose_with_every_row;
@@ -153,10 +153,10 @@ std::string zero_errors_text(const Evaluation& found) {
   return no_column_text(found) + "; errors.machines in a Monte Carlo study draws them";
 }
 
-constinit const Kind kEvaluateKind{.study = kEvaluateStudy,
-                                   .run = {run_study_of_kind, cases_outlook, shards_by_pose},
-                                   .file = kEvaluationFile,
-                                   .report = kEvaluationReport,
-                                   .given_errors = evaluated_errors};
+constinit const Kind kKind{.study = kStudy,
+                           .run = {run_study_of_kind, cases_outlook, shards_by_pose},
+                           .file = kFile,
+                           .report = kReport,
+                           .given_errors = evaluated_errors};
 
-}  // namespace poesy
+}  // namespace poesy::evaluate

@@ -15,7 +15,14 @@
 #include "engine/run/result.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::axis {
+
+using Case = Axis<"case">;  ///< Named cases of errors.
+using Row = Axis<"row">;    ///< Rows of a table of errors.
+
+}  // namespace poesy::axis
+
+namespace poesy::evaluate {
 
 /// A named set of fixed errors.
 struct ErrorCase {
@@ -29,12 +36,7 @@ struct CaseOptions {
 };
 
 /// The kind of study `evaluate`, which solves named cases of fixed errors.
-extern const StudyKind kEvaluateStudy;
-
-namespace axis {
-using Case = Axis<"case">;  ///< Named cases of errors.
-using Row = Axis<"row">;    ///< Rows of a table of errors.
-}  // namespace axis
+extern const StudyKind kStudy;
 
 /// The responses to errors that are stated and not drawn: named cases, or rows of a table. The verdicts on limits are
 /// in StoredResult.
@@ -129,4 +131,4 @@ inline std::size_t row_of_solve(const Evaluation& found, std::size_t pose, std::
   return found.pairing == Pairing::row_by_row ? pose : sample;
 }
 
-}  // namespace poesy
+}  // namespace poesy::evaluate

@@ -13,7 +13,7 @@
 #include "engine/run/evaluation.h"
 #include "engine/study/table_file.h"
 
-namespace poesy {
+namespace poesy::evaluate {
 namespace {
 
 constexpr const char* kLabels = "/evaluate/label";
@@ -476,7 +476,7 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
 
 }  // namespace
 
-constinit const FileKind kEvaluationFile{.write = write, .read = read, .append_tables = append_tables};
+constinit const FileKind kFile{.write = write, .read = read, .append_tables = append_tables};
 
 GivenErrors evaluated_errors(const StoredResult& result) {
   const Evaluation& found = evaluation_of(result);
@@ -499,7 +499,7 @@ std::vector<std::string> row_names(const RowLabels& labels, Pairing pairing, std
 
 void write_evaluation(const std::string& path, const Study& study, const SelectedPoses& poses,
                       std::span<const FactorIndex> factors, const Evaluation& found, const RunFacts& facts) {
-  write_result(path, kEvaluateStudy.name, kEvaluationFile, study, poses, TableOfErrors{factors, found}, facts);
+  write_result(path, kStudy.name, kFile, study, poses, TableOfErrors{factors, found}, facts);
 }
 
-}  // namespace poesy
+}  // namespace poesy::evaluate

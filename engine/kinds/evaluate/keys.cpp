@@ -12,10 +12,10 @@
 #include "engine/study/study_kind.h"
 #include "engine/study/table_file.h"
 
-namespace poesy {
+namespace poesy::evaluate {
 namespace {
 
-constexpr std::array<std::string_view, 4> kEvaluateKeys{"background", "limits", "calibration", "cases"};
+constexpr std::array<std::string_view, 4> kKeys{"background", "limits", "calibration", "cases"};
 
 void set_case_errors(const StudyValue& value, std::string_view key, const ModelDescription& model,
                      std::vector<double>& errors) {
@@ -202,15 +202,15 @@ AtPose cases_at_pose(const Study& study) {
 
 }  // namespace
 
-const StudyKind kEvaluateStudy{.name = "evaluate",
-                               .asks = "what named cases of fixed errors do",
-                               .keys = kEvaluateKeys,
-                               .has_pose_before = true,
-                               .overrides = "a case sets",
-                               .rows = cases_rows,
-                               .tables = case_tables,
-                               .complete = complete_cases,
-                               .check_errors = check_cases,
-                               .at_pose = cases_at_pose};
+const StudyKind kStudy{.name = "evaluate",
+                       .asks = "what named cases of fixed errors do",
+                       .keys = kKeys,
+                       .has_pose_before = true,
+                       .overrides = "a case sets",
+                       .rows = cases_rows,
+                       .tables = case_tables,
+                       .complete = complete_cases,
+                       .check_errors = check_cases,
+                       .at_pose = cases_at_pose};
 
-}  // namespace poesy
+}  // namespace poesy::evaluate

@@ -2,15 +2,15 @@
 
 #include "engine/kinds/kind.h"
 
-namespace poesy {
+namespace poesy::evaluate {
 
 /// The kind of study `evaluate`: the responses to named cases of fixed errors.
-extern const Kind kEvaluateKind;
+extern const Kind kKind;
 
 /// How results of evaluations are stored and reported.
 /// @{
-extern const FileKind kEvaluationFile;
-extern const ReportKind kEvaluationReport;
+extern const FileKind kFile;
+extern const ReportKind kReport;
 /// @}
 
-}  // namespace poesy
+}  // namespace poesy::evaluate

@@ -17,7 +17,7 @@
 #include "engine/report/tables.h"
 #include "engine/run/evaluation.h"
 
-namespace poesy {
+namespace poesy::evaluate {
 namespace {
 
 /// The number of significant digits in tables. It is larger than for estimates, because these numbers have no sampling
@@ -433,14 +433,14 @@ Table evaluation_table(const StoredResult& result) {
   return table;
 }
 
-constinit const ReportKind kEvaluationReport{.tally = tally,
-                                             .tables = evaluation_tables,
-                                             .merits = merits,
-                                             .words = words,
-                                             .method = method,
-                                             .answer = answer,
-                                             .shown_cells = cells,
-                                             .page = add_page,
-                                             .comparable = comparable};
+constinit const ReportKind kReport{.tally = tally,
+                                   .tables = evaluation_tables,
+                                   .merits = merits,
+                                   .words = words,
+                                   .method = method,
+                                   .answer = answer,
+                                   .shown_cells = cells,
+                                   .page = add_page,
+                                   .comparable = comparable};
 
-}  // namespace poesy
+}  // namespace poesy::evaluate

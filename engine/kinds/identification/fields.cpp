@@ -4,10 +4,10 @@
 #include "engine/kinds/identification/kind.h"
 #include "engine/result/result_parts.h"
 
-namespace poesy {
+namespace poesy::identification {
 namespace {
 
-using Identification = IdentificationResult;
+using Identification = Result;
 
 const Group<Identification> kIdentification{
     "/identification",
@@ -134,6 +134,6 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
 
 }  // namespace
 
-constinit const FileKind kIdentificationFile{.write = write, .read = read, .append_tables = append_tables};
+constinit const FileKind kFile{.write = write, .read = read, .append_tables = append_tables};
 
-}  // namespace poesy
+}  // namespace poesy::identification

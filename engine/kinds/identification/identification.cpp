@@ -9,7 +9,7 @@
 #include "engine/base/nan.h"
 #include "engine/kinds/identification/kind.h"
 
-namespace poesy {
+namespace poesy::identification {
 namespace {
 
 /// An error takes part in the deformation by several errors if setting it to zero reduces the deformation to at most
@@ -25,7 +25,7 @@ using Deformations = std::vector<double>;
 class Identification {
  public:
   Identification(const Analysis& analysis, const ModelDescription& model, const SolveTable& solve)
-      : analysis_(&analysis), asked_(&asked_of<IdentificationOptions>(analysis)), model_(&model), solve_(&solve) {
+      : analysis_(&analysis), asked_(&asked_of<Options>(analysis)), model_(&model), solve_(&solve) {
     POESY_EXPECTS(model.deformation.has_value());
     const std::size_t factors = analysis.factors.size();
     const std::size_t groups = asked_->groups.size();
@@ -36,7 +36,7 @@ class Identification {
     make_room({factors}, found_.single, found_.coupled);
   }
 
-  std::optional<IdentificationResult> operator()() {
+  std::optional<Result> operator()() {
     if (!single_stage() || !coupled_stage()) return std::nullopt;
     for (std::size_t g = 0; g < found_.groups(); ++g) {
       for (std::size_t p = 0; p < found_.factors(); ++p) {
@@ -209,15 +209,15 @@ class Identification {
   }
 
   const Analysis* analysis_;
-  const IdentificationOptions* asked_;
+  const Options* asked_;
   const ModelDescription* model_;
   const SolveTable* solve_;
-  IdentificationResult found_;
+  Result found_;
 };
 
 /// Identifies which errors of the study deform the mechanism. Returns nothing if the run was stopped.
-std::optional<IdentificationResult> run_identification(const Study& study, const Model& model, const PoseSet& poses,
-                                                       const RunOptions& options) {
+std::optional<Result> run_identification(const Study& study, const Model& model, const PoseSet& poses,
+                                         const RunOptions& options) {
   return identify(study.analysis, model.description(), [&](const ErrorTable& errors) {
     return run_evaluation(model, study.solver, poses, errors, Pairing::every_pose_with_every_row, options,
                           Outcomes::responses);
@@ -232,7 +232,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
 
 Outlook identification_outlook(const Study& study, const Model& model, const PoseSet& poses) {
   const std::size_t errors = study.analysis.factors.size();
-  const std::size_t groups = asked_of<IdentificationOptions>(study.analysis).groups.size();
+  const std::size_t groups = asked_of<Options>(study.analysis).groups.size();
   const std::size_t solves = errors * groups * poses.size();
   const std::size_t outcomes = solves * outcome_bytes(study.model(), Outcomes::responses);
   return {.solves = counted_things(errors, "errors x ") + counted_things(groups, "groups x ") +
@@ -246,14 +246,11 @@ Outlook identification_outlook(const Study& study, const Model& model, const Pos
 
 }  // namespace
 
-std::optional<IdentificationResult> identify(const Analysis& analysis, const ModelDescription& model,
-                                             const SolveTable& solve) {
+std::optional<Result> identify(const Analysis& analysis, const ModelDescription& model, const SolveTable& solve) {
   return Identification(analysis, model, solve)();
 }
 
-constinit const Kind kIdentificationKind{.study = kIdentificationStudy,
-                                         .run = {run_study_of_kind, identification_outlook, nullptr},
-                                         .file = kIdentificationFile,
-                                         .report = kIdentificationReport};
+constinit const Kind kKind{
+    .study = kStudy, .run = {run_study_of_kind, identification_outlook, nullptr}, .file = kFile, .report = kReport};
 
-}  // namespace poesy
+}  // namespace poesy::identification

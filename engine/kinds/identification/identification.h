@@ -10,7 +10,13 @@
 #include "engine/run/result.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::axis {
+
+using SizeGroup = Axis<"group">;  ///< Pairs of sizes (ErrorSize) at which errors are tried.
+
+}  // namespace poesy::axis
+
+namespace poesy::identification {
 
 /// A pair of sizes at which errors are tried: one for lengths, one for angles.
 struct ErrorSize {
@@ -20,7 +26,7 @@ struct ErrorSize {
 };
 
 /// The options of an identification study.
-struct IdentificationOptions {
+struct Options {
   /// [groups] Sizes at which errors are tried. For each group the study finds which errors deform the mechanism.
   std::vector<ErrorSize> groups;
   double pose_share =
@@ -28,22 +34,18 @@ struct IdentificationOptions {
 };
 
 /// The kind of study that identifies which errors deform the mechanism at all.
-extern const StudyKind kIdentificationStudy;
+extern const StudyKind kStudy;
 
 /// Two errors of one frame that deform the mechanism only together.
 struct Coupling {
-  std::size_t group;              ///< index in IdentificationOptions::groups
+  std::size_t group;              ///< index in Options::groups
   std::size_t first;              ///< index of the first error among the study's factors
   std::size_t second;             ///< index of the second error among the study's factors
   std::uint64_t deforming_poses;  ///< number of poses at which both together deform the mechanism
 };
 
-namespace axis {
-using SizeGroup = Axis<"group">;  ///< Pairs of sizes (ErrorSize) at which errors are tried.
-}  // namespace axis
-
 /// Which errors deform the mechanism, for each group (a pair of sizes) and over the poses.
-struct IdentificationResult {
+struct Result {
   /// A number for each group and error.
   template <class T>
   using ByGroup = Array<T, axis::SizeGroup, axis::Factor>;
@@ -98,12 +100,9 @@ using SolveTable = std::function<std::optional<EvaluationResult>(const ErrorTabl
 /// removes nine tenths of the deformation at `pose_share` of the poses.
 ///
 /// Precondition: the model has a measure of deformation.
-std::optional<IdentificationResult> identify(const Analysis& analysis, const ModelDescription& model,
-                                             const SolveTable& solve);
+std::optional<Result> identify(const Analysis& analysis, const ModelDescription& model, const SolveTable& solve);
 
 /// The identification in a stored result. Precondition: the result is of kind `identification`.
-inline const IdentificationResult& identification_of(const StoredResult& result) {
-  return found_of<IdentificationResult>(result);
-}
+inline const Result& identification_of(const StoredResult& result) { return found_of<Result>(result); }
 
-}  // namespace poesy
+}  // namespace poesy::identification

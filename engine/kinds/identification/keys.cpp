@@ -7,10 +7,10 @@
 #include "engine/study/study_kind.h"
 #include "engine/study/table_file.h"
 
-namespace poesy {
+namespace poesy::identification {
 namespace {
 
-constexpr std::array<std::string_view, 3> kIdentificationKeys{"factors", "pose_share", "groups"};
+constexpr std::array<std::string_view, 3> kKeys{"factors", "pose_share", "groups"};
 
 /// The pair of sizes for a study that states none: one display unit of length (1 mm) and one of angle (1 deg).
 ErrorSize usual_group() { return {"group 1", display_unit(Dimension::length).si, display_unit(Dimension::angle).si}; }
@@ -35,7 +35,7 @@ const InnerRows<ErrorSize>& group_keys() {
 }
 
 void read_groups(const StudyValue& value, Study& study, const Reading&) {
-  std::vector<ErrorSize>& groups = asked_of<IdentificationOptions>(study.analysis).groups;
+  std::vector<ErrorSize>& groups = asked_of<Options>(study.analysis).groups;
   for (const StudyValue& one : value.list()) {
     ErrorSize group{};
     read_keys(group_keys(), one.section(), group, Nothing());
@@ -47,7 +47,7 @@ void read_groups(const StudyValue& value, Study& study, const Reading&) {
 
 std::string groups_lines(const Study& study) {
   std::string text;
-  for (const ErrorSize& group : asked_of<IdentificationOptions>(study.analysis).groups) {
+  for (const ErrorSize& group : asked_of<Options>(study.analysis).groups) {
     text += "\n[[analysis.groups]]\n" + keys_text(group_keys(), group);
   }
   return text;
@@ -74,19 +74,19 @@ std::vector<StudyRow> identification_rows() {
                    .late = 2,
                    .shown = shown_groups},
           StudyRow{.name = "pose_share",
-                   .value = asked_value(number_at(between_0_and_1("0.95"), &IdentificationOptions::pose_share)),
+                   .value = asked_value(number_at(between_0_and_1("0.95"), &Options::pose_share)),
                    .meaning = "The share of the poses that a verdict asks for."}};
 }
 
 void add_usual_group(Study& study, const Reading&) {
-  std::vector<ErrorSize>& groups = asked_of<IdentificationOptions>(study.analysis).groups;
+  std::vector<ErrorSize>& groups = asked_of<Options>(study.analysis).groups;
   if (groups.empty()) groups.push_back(usual_group());
 }
 
 void check_groups(const StudySection& analysis, const Study& study, const Model& model) {
   const auto value = analysis.find("groups");
   const std::vector<StudyValue> written = value ? value->list() : std::vector<StudyValue>{};
-  const std::vector<ErrorSize>& groups = asked_of<IdentificationOptions>(study.analysis).groups;
+  const std::vector<ErrorSize>& groups = asked_of<Options>(study.analysis).groups;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const StudySection section = written.empty() ? analysis : written[g].section();
     for (const FactorIndex factor : study.analysis.factors) {
@@ -113,22 +113,22 @@ std::optional<Refusal> no_template(const ModelDescription& model) {
 }
 
 AtPose identification_at_pose(const Study& study) {
-  const auto groups = static_cast<double>(asked_of<IdentificationOptions>(study.analysis).groups.size());
+  const auto groups = static_cast<double>(asked_of<Options>(study.analysis).groups.size());
   const double tried = static_cast<double>(study.analysis.factors.size()) * groups;
   return {tried, "factors times groups", tried, "factors times groups"};
 }
 
 }  // namespace
 
-const StudyKind kIdentificationStudy{.name = "identification",
-                                     .asks = "which errors deform the mechanism at all",
-                                     .keys = kIdentificationKeys,
-                                     .rows = identification_rows,
-                                     .tables = [] { return StudyTables{described(group_keys())}; },
-                                     .refusal = nothing_deforms,
-                                     .no_template = no_template,
-                                     .complete = add_usual_group,
-                                     .check_errors = check_groups,
-                                     .at_pose = identification_at_pose};
+const StudyKind kStudy{.name = "identification",
+                       .asks = "which errors deform the mechanism at all",
+                       .keys = kKeys,
+                       .rows = identification_rows,
+                       .tables = [] { return StudyTables{described(group_keys())}; },
+                       .refusal = nothing_deforms,
+                       .no_template = no_template,
+                       .complete = add_usual_group,
+                       .check_errors = check_groups,
+                       .at_pose = identification_at_pose};
 
-}  // namespace poesy
+}  // namespace poesy::identification

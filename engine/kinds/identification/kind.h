@@ -2,15 +2,15 @@
 
 #include "engine/kinds/kind.h"
 
-namespace poesy {
+namespace poesy::identification {
 
 /// The kind of study `identification`: which errors deform the mechanism at all.
-extern const Kind kIdentificationKind;
+extern const Kind kKind;
 
 /// How results of identification studies are stored and reported.
 /// @{
-extern const FileKind kIdentificationFile;
-extern const ReportKind kIdentificationReport;
+extern const FileKind kFile;
+extern const ReportKind kReport;
 /// @}
 
-}  // namespace poesy
+}  // namespace poesy::identification

@@ -11,19 +11,19 @@
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
 
-namespace poesy {
+namespace poesy::identification {
 namespace {
 
 constexpr std::string_view kAlone = "deforms alone";
 constexpr std::string_view kCoupled = "deforms in a coupling";
 constexpr std::string_view kAbsorbed = "absorbed";
 
-std::string_view verdict(const IdentificationResult& found, std::size_t p) {
+std::string_view verdict(const Result& found, std::size_t p) {
   if (found.single(p) != 0) return kAlone;
   return found.coupled(p) != 0 ? kCoupled : kAbsorbed;
 }
 
-bool groups_agree(const IdentificationResult& found) {
+bool groups_agree(const Result& found) {
   for (std::size_t g = 0; g < found.groups(); ++g) {
     if (!std::ranges::equal(found.coupled_by_group.row(g), found.coupled)) return false;
     if (!std::ranges::equal(found.single_by_group.row(g), found.single)) return false;
@@ -31,7 +31,7 @@ bool groups_agree(const IdentificationResult& found) {
   return true;
 }
 
-std::vector<std::string> notes(const IdentificationResult& found) {
+std::vector<std::string> notes(const Result& found) {
   std::vector<std::string> list{
       fmt::format("under each group of sizes: poses where the error alone deforms, of {}; {} decide, rounding ends at "
                   "{:.3g}",
@@ -41,7 +41,7 @@ std::vector<std::string> notes(const IdentificationResult& found) {
 }
 
 Table verdict_table(const StoredResult& result) {
-  const IdentificationResult& found = identification_of(result);
+  const Result& found = identification_of(result);
   Table table{
       .name = "identification",
       .caption = fmt::format("{} of {} errors deform alone, {} with couplings", std::ranges::count(found.single, 1),
@@ -81,8 +81,7 @@ std::vector<std::string> group_names(const StoredResult& result) {
 }
 
 /// Converts numbers of poses to shares of all poses, or to the shares of the remaining poses if `but_these` is true.
-std::vector<double> share_of_poses(const IdentificationResult& found,
-                                   const IdentificationResult::ByGroup<std::uint64_t>& counts, bool but_these) {
+std::vector<double> share_of_poses(const Result& found, const Result::ByGroup<std::uint64_t>& counts, bool but_these) {
   std::vector<double> list;
   for (const std::uint64_t count : counts) {
     const std::uint64_t those = but_these ? found.poses - count : count;
@@ -93,7 +92,7 @@ std::vector<double> share_of_poses(const IdentificationResult& found,
 
 /// [groups x errors] The largest deformation by each error alone, divided by the largest deformation by any error at
 /// the same pair of sizes. 0 if the deformation is only rounding, NaN if it is unknown.
-std::vector<double> relative_deformations(const IdentificationResult& found) {
+std::vector<double> relative_deformations(const Result& found) {
   std::vector<double> list;
   for (std::size_t g = 0; g < found.groups(); ++g) {
     const std::span<const double> all = found.single_max.row(g);
@@ -110,7 +109,7 @@ bool differ_by_pose(std::span<const double> shares) {
 }
 
 Bars bars_of(const StoredResult& result, ArrayPool& pool) {
-  const IdentificationResult& found = identification_of(result);
+  const Result& found = identification_of(result);
   Bars bars{{{"size of the errors", group_names(result)}}, {}, names_of(result.factors)};
   const auto add = [&](std::string label, const std::string& array, const std::vector<double>& shares) {
     bars.quantities.push_back({std::move(label), std::vector<std::vector<std::string>>(found.groups(), {"%"}),
@@ -129,7 +128,7 @@ Bars bars_of(const StoredResult& result, ArrayPool& pool) {
 }
 
 void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  const IdentificationResult& found = identification_of(result);
+  const Result& found = identification_of(result);
   Section& section = page.add_section("which-errors-deform", "Which errors deform the mechanism");
   section.paragraph(fmt::format(
       "Each error was set alone, and then together with those of its frame that do not deform alone, at {}. An error "
@@ -154,7 +153,7 @@ std::vector<std::string> errors_that(const StoredResult& result, std::string_vie
 }
 
 Answer answer(const StoredResult& result) {
-  const IdentificationResult& found = identification_of(result);
+  const Result& found = identification_of(result);
   const std::vector<std::string> alone = errors_that(result, kAlone);
   const std::vector<std::string> coupled = errors_that(result, kCoupled);
   const std::vector<std::string> absorbed = errors_that(result, kAbsorbed);
@@ -176,7 +175,7 @@ Answer answer(const StoredResult& result) {
 SolveTally tally(const StoredResult& result) { return {"", {"all errors"}, 1, {identification_of(result).solves}}; }
 
 Comparable comparable(const StoredResult& result, const StoredResult&) {
-  const IdentificationResult& found = identification_of(result);
+  const Result& found = identification_of(result);
   std::vector<double> percent;
   for (const std::uint64_t below : found.single_below) {
     percent.push_back(100.0 - 100.0 * static_cast<double>(below) / static_cast<double>(found.poses));
@@ -197,7 +196,7 @@ std::vector<Table> identification_tables(const StoredResult& result, const Table
 
 }  // namespace
 
-constinit const ReportKind kIdentificationReport{
+constinit const ReportKind kReport{
     .tally = tally,
     .tables = identification_tables,
     .words = [](const StoredResult& result) { return StudyWords{.sizes = group_names(result)}; },
@@ -206,4 +205,4 @@ constinit const ReportKind kIdentificationReport{
     .page = add_page,
     .comparable = comparable};
 
-}  // namespace poesy
+}  // namespace poesy::identification

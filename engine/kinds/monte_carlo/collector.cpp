@@ -7,12 +7,12 @@
 #include "engine/stats/moments.h"
 #include "engine/stats/sums.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 /// Reads or writes the statistics of one response at a finished pose that come from its quantile sketch: the extremes,
 /// the quantiles, and share_magnitude if it is computed.
-void sketched_state(Archive& archive, MonteCarloResult& result, std::size_t response, std::size_t pose) {
+void sketched_state(Archive& archive, Result& result, std::size_t response, std::size_t pose) {
   archive.real(result.min(response, pose), result.max(response, pose));
   archive.reals(result.quantiles.row(response, pose));
   archive.reals(result.quantiles_ci_low.row(response, pose));
@@ -52,12 +52,11 @@ void PoseSamples::state(Archive& archive) {
   archive.optional(effects, errors_, responses.size());
 }
 
-MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis,
-                                         bool keep_checkpoint)
+Collector::Collector(const Plan& plan, std::size_t responses, const Analysis& analysis, bool keep_checkpoint)
     : plan_(&plan),
       responses_(responses),
       limits_(analysis.limits),
-      asked_(asked_of<MonteCarloOptions>(analysis)),
+      asked_(asked_of<Options>(analysis)),
       keep_checkpoint_(keep_checkpoint),
       at_pose_(no_samples()),
       sketches_(responses),
@@ -67,7 +66,7 @@ MonteCarloCollector::MonteCarloCollector(const Plan& plan, std::size_t responses
       failed_(plan.poses().size()),
       kept_(plan.poses().size()) {}
 
-void MonteCarloCollector::add(const WorkUnit& unit, const PoseUnit& found) {
+void Collector::add(const WorkUnit& unit, const PoseUnit& found) {
   const PoseIndex pose = unit.pose;
   if (at_pose_.solves.total() == 0) {
     open_ = pose;
@@ -85,7 +84,7 @@ void MonteCarloCollector::add(const WorkUnit& unit, const PoseUnit& found) {
   finish_pose();
 }
 
-void MonteCarloCollector::keep() {
+void Collector::keep() {
   if (at_pose_.solves.total() == 0) return;
   ByteWriter to;
   write_state(at_pose_, to);
@@ -94,7 +93,7 @@ void MonteCarloCollector::keep() {
   set_kept(open_.value, std::move(kept));
 }
 
-void MonteCarloCollector::set_kept(std::size_t pose, Kept kept) {
+void Collector::set_kept(std::size_t pose, Kept kept) {
   kept_bytes_ -= kept_[pose].bytes.size();
   kept_[pose] = {};
   if (kept.bytes.size() > kMostKeptBytes - kept_bytes_) return;
@@ -102,12 +101,12 @@ void MonteCarloCollector::set_kept(std::size_t pose, Kept kept) {
   kept_[pose] = std::move(kept);
 }
 
-void MonteCarloCollector::set_moments(std::size_t response, std::size_t pose, const Moments& moments) {
+void Collector::set_moments(std::size_t response, std::size_t pose, const Moments& moments) {
   columns_.set_moments(response, pose, moments);
   moments_(pose, response) = moments;
 }
 
-void MonteCarloCollector::finish_pose() {
+void Collector::finish_pose() {
   for (std::size_t r = 0; r < responses_; ++r) {
     const auto& [moments, sketch] = at_pose_.responses[r];
     set_moments(r, open_.value, moments);
@@ -120,13 +119,13 @@ void MonteCarloCollector::finish_pose() {
   at_pose_ = no_samples();
 }
 
-std::size_t MonteCarloCollector::units_done(std::size_t pose) const {
+std::size_t Collector::units_done(std::size_t pose) const {
   if (is_finished(pose)) return plan_->units_per_cell();
   const SolveCounts& solves = is_open(pose) ? at_pose_.solves : kept_[pose].solves;
   return static_cast<std::size_t>(solves.total() / Plan::kUnitSamples);
 }
 
-SolveCounts MonteCarloCollector::total() const {
+SolveCounts Collector::total() const {
   SolveCounts sum = at_pose_.solves;
   for (std::size_t m = 0; m < kept_.size(); ++m) {
     if (is_finished(m)) {
@@ -138,7 +137,7 @@ SolveCounts MonteCarloCollector::total() const {
   return sum;
 }
 
-EffectResult MonteCarloCollector::effects() const {
+EffectResult Collector::effects() const {
   const double conf_level = columns_.result().conf_level;
   const std::vector<BinSpread> spreads = bin_spreads(*plan_);
   std::vector<PoseIndex> poses;
@@ -156,8 +155,8 @@ EffectResult MonteCarloCollector::effects() const {
   return found;
 }
 
-MonteCarloResult MonteCarloCollector::result() && {
-  MonteCarloResult& found = columns_.result();
+Result Collector::result() && {
+  Result& found = columns_.result();
   for (std::size_t r = 0; r < responses_; ++r) {
     Moments overall;
     for (std::size_t m = 0; m < found.poses(); ++m) {
@@ -172,8 +171,8 @@ MonteCarloResult MonteCarloCollector::result() && {
   return std::move(found);
 }
 
-void MonteCarloCollector::finished_state(Archive& archive, std::size_t pose, std::size_t samples) {
-  MonteCarloResult& result = columns_.result();
+void Collector::finished_state(Archive& archive, std::size_t pose, std::size_t samples) {
+  Result& result = columns_.result();
   for (std::size_t r = 0; r < responses_; ++r) {
     Moments moments = moments_(pose, r);
     archive.object(moments);
@@ -185,7 +184,7 @@ void MonteCarloCollector::finished_state(Archive& archive, std::size_t pose, std
   archive.optional(effects_[pose], plan_->factors().size(), responses_);
 }
 
-void MonteCarloCollector::state(Archive& archive, std::size_t samples) {
+void Collector::state(Archive& archive, std::size_t samples) {
   const bool is_shorter = archive.reads() && samples < plan_->samples();
   for (std::size_t m = 0; m < columns_.result().poses(); ++m) {
     const bool finished = archive.flag(is_finished(m));
@@ -202,7 +201,7 @@ void MonteCarloCollector::state(Archive& archive, std::size_t samples) {
   if (archive.flag(at_pose_.solves.total() > 0)) open_state(archive, samples);
 }
 
-void MonteCarloCollector::open_state(Archive& archive, std::size_t samples) {
+void Collector::open_state(Archive& archive, std::size_t samples) {
   archive.expect(at_pose_.solves.total() == 0, "has two unfinished poses");
   archive.number(open_.value, columns_.result().poses() - 1);
   archive.expect(!is_finished(open_.value), "has a pose twice");
@@ -213,7 +212,7 @@ void MonteCarloCollector::open_state(Archive& archive, std::size_t samples) {
   at_pose_ = no_samples();
 }
 
-void MonteCarloCollector::kept_state(Archive& archive, std::size_t pose, std::size_t most_samples) {
+void Collector::kept_state(Archive& archive, std::size_t pose, std::size_t most_samples) {
   Bytes read;
   archive.block(archive.reads() ? read : kept_[pose].bytes);
   if (read.empty()) return;
@@ -224,4 +223,4 @@ void MonteCarloCollector::kept_state(Archive& archive, std::size_t pose, std::si
   set_kept(pose, {solves, std::move(read)});
 }
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -15,7 +15,7 @@
 #include "engine/study/plan.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 
 /// The statistics of one response over some samples.
 struct ResponseSamples {
@@ -48,7 +48,7 @@ struct PoseSamples {
 /// memory does not depend on the number of samples, and each finished pose takes only a few numbers. For a later study
 /// with more samples, packed quantile sketches of finished poses are kept as well, up to kMostKeptBytes. The result
 /// does not depend on the order in which poses are finished.
-class MonteCarloCollector {
+class Collector {
  public:
   /// The largest number of bytes of packed quantile sketches that are kept for a later study with more samples. If the
   /// sketches of a pose no longer fit, that study solves the pose again from its first sample.
@@ -58,7 +58,7 @@ class MonteCarloCollector {
   static constexpr bool kOfRound = true;
 
   /// Keeps a reference to the plan. keep_checkpoint: whether to keep packed quantile sketches of finished poses.
-  MonteCarloCollector(const Plan& plan, std::size_t responses, const Analysis& analysis, bool keep_checkpoint = true);
+  Collector(const Plan& plan, std::size_t responses, const Analysis& analysis, bool keep_checkpoint = true);
 
   /// Adds a unit. Precondition: no pose is begun before all units of the previous pose are added.
   void add(const WorkUnit& unit, const PoseUnit& found);
@@ -67,9 +67,9 @@ class MonteCarloCollector {
   /// How the solves of all added units ended.
   SolveCounts total() const;
   /// The result at the finished poses. The numbers over all poses are not set.
-  const MonteCarloResult& finished() const { return columns_.result(); }
+  const Result& finished() const { return columns_.result(); }
   /// The result. Precondition: every unit was added.
-  MonteCarloResult result() &&;
+  Result result() &&;
 
   /// Writes the statistics of all poses; or reads those that a study with `samples` samples at each pose wrote, and
   /// adds them. If this study has more samples, the poses that are read are unfinished, and continue from their packed
@@ -102,7 +102,7 @@ class MonteCarloCollector {
   const Plan* plan_;
   std::size_t responses_;
   std::vector<ResponseLimit> limits_;
-  MonteCarloOptions asked_;
+  Options asked_;
   bool keep_checkpoint_;
   PoseIndex open_;                                      ///< the open pose: the one whose units are being added
   PoseSamples at_pose_;                                 ///< statistics of the open pose; no samples if no pose is open
@@ -118,4 +118,4 @@ class MonteCarloCollector {
   std::size_t kept_bytes_ = 0;
 };
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -8,7 +8,7 @@
 #include "engine/base/contract.h"
 #include "engine/base/nan.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 /// The mean, or NaN without samples.
@@ -37,7 +37,7 @@ std::uint64_t count_within(const QuantileSketch& samples, const ValueLimit& limi
 
 /// Sets `value` of the verdict to the worst share_magnitude of its response over the poses, and `pose` to the pose with
 /// this value.
-void take_worst_pose(const MonteCarloResult& found, LimitVerdict& verdict) {
+void take_worst_pose(const Result& found, LimitVerdict& verdict) {
   const std::span at_poses = found.share_magnitude.row(verdict.response);
   const auto worst = std::ranges::max_element(at_poses, {}, [&](double value) { return verdict.limit.badness(value); });
   verdict.value = *worst;
@@ -47,7 +47,7 @@ void take_worst_pose(const MonteCarloResult& found, LimitVerdict& verdict) {
 }  // namespace
 
 MonteCarloColumns::MonteCarloColumns(std::size_t poses, std::size_t responses, const Analysis& analysis)
-    : asked_(asked_of<MonteCarloOptions>(analysis)),
+    : asked_(asked_of<Options>(analysis)),
       limits_(limits_by_response(analysis.limits, responses)),
       mean_intervals_(analysis.conf_level) {
   const std::size_t levels = asked_.quantiles.size();
@@ -165,8 +165,8 @@ void fill_histogram(std::span<const Bucket> buckets, std::span<double> edges, st
   std::ranges::copy(bins.counts, counts.begin());
 }
 
-LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, double share,
-                          const MonteCarloResult& found, std::span<const QuantileSketch> overall) {
+LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, double share, const Result& found,
+                          std::span<const QuantileSketch> overall) {
   POESY_EXPECTS(judge != Judge::yield);
   LimitVerdicts verdicts{.judge = judge, .share = share, .limits = {}};
   const std::uint64_t tried = found.total().total();
@@ -184,4 +184,4 @@ LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, do
   return verdicts;
 }
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

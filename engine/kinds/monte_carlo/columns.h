@@ -12,7 +12,7 @@
 #include "engine/stats/quantile_sketch.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 
 /// Computes the numbers of a Monte Carlo result at each pose and over all poses.
 class MonteCarloColumns {
@@ -20,8 +20,8 @@ class MonteCarloColumns {
   /// A result with room for the numbers of a study with this analysis; all numbers are 0 until they are set.
   MonteCarloColumns(std::size_t poses, std::size_t responses, const Analysis& analysis);
 
-  MonteCarloResult& result() { return result_; }              ///< The numbers set so far.
-  const MonteCarloResult& result() const { return result_; }  ///< The numbers set so far.
+  Result& result() { return result_; }              ///< The numbers set so far.
+  const Result& result() const { return result_; }  ///< The numbers set so far.
 
   /// Sets the numbers that depend on the moments of a response at a pose.
   void set_moments(std::size_t response, std::size_t pose, const Moments& moments);
@@ -39,9 +39,9 @@ class MonteCarloColumns {
   /// [quantiles] The ranks of both ends of the interval of each quantile, among this many samples.
   const std::vector<RankInterval>& ranks_of(std::uint64_t samples);
 
-  MonteCarloOptions asked_;
+  Options asked_;
   std::vector<ValueLimit> limits_;  ///< [responses] limit of each response
-  MonteCarloResult result_;
+  Result result_;
   MeanIntervals mean_intervals_;
   std::uint64_t ranked_samples_ = 0;  ///< number of samples for which ranks_ was computed
   std::vector<RankInterval> ranks_;   ///< [quantiles] ranks of the ends of each interval
@@ -84,7 +84,7 @@ void fill_histogram(std::span<const Bucket> buckets, std::span<double> edges, st
 /// overall: [responses] quantile sketch of the samples of all poses that count. Preconditions: judge is rms or share;
 /// found.overall_rms is set, and for Judge::share also found.share_magnitude; no limit is over several poses
 /// (ValueLimit::is_over_poses); for Judge::rms, all limits are on magnitudes.
-LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, double share,
-                          const MonteCarloResult& found, std::span<const QuantileSketch> overall);
+LimitVerdicts judge_draws(std::span<const ResponseLimit> limits, Judge judge, double share, const Result& found,
+                          std::span<const QuantileSketch> overall);
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

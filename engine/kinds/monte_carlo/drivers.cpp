@@ -14,7 +14,7 @@
 #include "engine/stats/told_together.h"
 #include "engine/stats/yield_gradient.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 constexpr double kStep = kErrorGrowth - 1.0;
@@ -385,4 +385,4 @@ void add_drivers_section(const StoredResult& result, std::span<const Table> tabl
   section.table(tables, "reject_poses");
 }
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

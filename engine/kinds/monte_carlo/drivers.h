@@ -12,7 +12,7 @@
 #include "engine/result/result_file.h"
 
 /// Tables and report section of the errors on which a yield depends.
-namespace poesy {
+namespace poesy::monte_carlo {
 
 /// Sorts the positions in `order` by decreasing value(position); positions with NaN come last.
 std::vector<std::size_t> largest_first(std::vector<std::size_t> order, const std::function<double(std::size_t)>& value);
@@ -37,4 +37,4 @@ std::vector<Table> driver_tables(const StoredResult& result);
 /// result has a yield.
 void add_drivers_section(const StoredResult& result, std::span<const Table> tables, Page& page);
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -7,10 +7,10 @@
 #include "engine/kinds/monte_carlo/yield.h"
 #include "engine/result/result_parts.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
-using MonteCarlo = MonteCarloResult;
+using MonteCarlo = Result;
 
 const std::vector<Attribute<MonteCarlo>> kInterval{{"conf_level", &MonteCarlo::conf_level}};
 const std::vector<Attribute<MonteCarlo>> kSketch{{"quantile_relative_error", &MonteCarlo::quantile_relative_error}};
@@ -195,8 +195,7 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
                   {"1", "Number of the histogram's edge: bin k lies between k and k + 1"});
   write_group(result, kMonteCarlo, found);
   if (!found.share_magnitude.empty()) {
-    result.file().set_attribute("/monte_carlo/share_magnitude", "share",
-                                asked_of<MonteCarloOptions>(study.analysis).share);
+    result.file().set_attribute("/monte_carlo/share_magnitude", "share", asked_of<Options>(study.analysis).share);
   }
   write_effects(result, found.effects);
   if (found.machines) write_machines(result, *found.machines);
@@ -257,6 +256,6 @@ std::size_t monte_carlo_bytes(const AxisLengths& lengths, bool machines) {
   return bytes_of(kMonteCarlo.fields, lengths) + effect_bytes(lengths) + (machines ? machine_bytes(lengths) : 0);
 }
 
-constinit const FileKind kMonteCarloFile{.write = write, .read = read, .append_tables = append_tables};
+constinit const FileKind kFile{.write = write, .read = read, .append_tables = append_tables};
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -7,15 +7,15 @@
 #include "engine/study/limit_keys.h"
 #include "engine/study/study_kind.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
-constexpr std::array<std::string_view, 12> kMonteCarloKeys{"factors",     "samples",    "draws",     "calibrated",
-                                                           "calibration", "conf_level", "quantiles", "limits",
-                                                           "judge",       "share",      "yield",     "background"};
+constexpr std::array<std::string_view, 12> kKeys{"factors",     "samples",    "draws",     "calibrated",
+                                                 "calibration", "conf_level", "quantiles", "limits",
+                                                 "judge",       "share",      "yield",     "background"};
 
 /// The key `quantiles`: numbers between 0 and 1, ascending.
-KeyValue<MonteCarloOptions> quantiles() {
+KeyValue<Options> quantiles() {
   const NumberBounds bounds = between_0_and_1("0.95");
   const auto read = [=](const StudyValue& value) {
     std::vector<double> list;
@@ -33,10 +33,10 @@ KeyValue<MonteCarloOptions> quantiles() {
     for (const double quantile : quantiles) list.push_back(shortest(quantile));
     return list_text(list);
   };
-  return value_at("list of numbers", bounds.words, read, text, &MonteCarloOptions::quantiles);
+  return value_at("list of numbers", bounds.words, read, text, &Options::quantiles);
 }
 
-KeyValue<MonteCarloOptions> judge() {
+KeyValue<Options> judge() {
   return word_at<Judge>(
       {{Judge::rms,
         "the response's root mean square over the draws of all poses is within the limit; draws that were not solved "
@@ -46,14 +46,14 @@ KeyValue<MonteCarloOptions> judge() {
        {Judge::yield,
         "of the machines at least a share, yield, is within all limits at every pose; machines that were not solved at "
         "a pose are not. For draws = \"per machine\""}},
-      &MonteCarloOptions::judge);
+      &Options::judge);
 }
 
 /// The default for the key `judge`, which states how limits are judged.
 Judge usual_judge(const Analysis& analysis) { return analysis.draws == Draws::per_machine ? Judge::yield : Judge::rms; }
 
 std::string judge_line(const Study& study) {
-  const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
+  const Options& asked = asked_of<Options>(study.analysis);
   const bool idle = asked.judge == usual_judge(study.analysis) && study.analysis.limits.empty();
   return idle ? "" : "judge = " + in_quotes(name(asked.judge)) + "\n";
 }
@@ -61,12 +61,12 @@ std::string judge_line(const Study& study) {
 /// The line of the key `share` in a study file. The text that identifies a checkpoint (identity_of()) has this line
 /// even if limits are left out of it, because the saved state contains share_magnitude.
 std::string share_line(const Study& study) {
-  const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
+  const Options& asked = asked_of<Options>(study.analysis);
   return asked.judge == Judge::share ? "share = " + shortest(asked.share) + "\n" : "";
 }
 
 std::string yield_line(const Study& study) {
-  const double asked = asked_of<MonteCarloOptions>(study.analysis).yield;
+  const double asked = asked_of<Options>(study.analysis).yield;
   return asked > 0.0 ? "yield = " + shortest(asked) + "\n" : "";
 }
 
@@ -83,14 +83,14 @@ std::vector<StudyRow> monte_carlo_rows() {
                .lines = judge_line,
                .commented = true},
       StudyRow{.name = "share",
-               .value = asked_value(number_at(between_0_and_1("0.9973"), &MonteCarloOptions::share)),
+               .value = asked_value(number_at(between_0_and_1("0.9973"), &Options::share)),
                .usual = "",
                .example = "0.9973",
                .meaning = "With judge = \"share\", and required there: the share of the draws.",
                .lines = share_line,
                .commented = true},
       StudyRow{.name = "yield",
-               .value = asked_value(number_at(between_0_and_1("0.9973"), &MonteCarloOptions::yield)),
+               .value = asked_value(number_at(between_0_and_1("0.9973"), &Options::yield)),
                .usual = "none: the yield is found, and not judged",
                .example = "0.9973",
                .meaning = "With judge = \"yield\": the share of the machines that must be within all limits. PASS or "
@@ -102,7 +102,7 @@ std::vector<StudyRow> monte_carlo_rows() {
 void check_share(const Study& study, const StudySection& section) {
   const auto judge = section.find("judge");
   const auto share = section.find("share");
-  const Judge by = asked_of<MonteCarloOptions>(study.analysis).judge;
+  const Judge by = asked_of<Options>(study.analysis).judge;
   if (by == Judge::share && !share) {
     judge->fail(
         "is \"share\", but analysis.share is missing",
@@ -116,7 +116,7 @@ void check_share(const Study& study, const StudySection& section) {
 /// Refuses the key `yield` if limits are not judged by the yield, if there are no limits, or if the number of machines
 /// is too small to show this yield even if all machines are good.
 void check_yield(const Study& study, const StudySection& section) {
-  const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
+  const Options& asked = asked_of<Options>(study.analysis);
   const auto yield = section.find("yield");
   if (!yield) return;
   if (asked.judge != Judge::yield) {
@@ -138,7 +138,7 @@ void check_yield(const Study& study, const StudySection& section) {
 
 /// Refuses limits that cannot be judged in the way that the key `judge` states.
 void check_limits(const Study& study, const StudySection& section) {
-  const Judge by = asked_of<MonteCarloOptions>(study.analysis).judge;
+  const Judge by = asked_of<Options>(study.analysis).judge;
   for (const ResponseLimit& limit : study.analysis.limits) {
     if (limit.allowed.is_over_poses() && by != Judge::yield) {
       limit_value(section, study, limit)
@@ -171,7 +171,7 @@ void complete(Study& study, const Reading& reading) {
   if (reading.use == StudyUse::run) check_calibration(study, section);
   check_error_sizes(study, reading);
   const auto judge = section.find("judge");
-  MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
+  Options& asked = asked_of<Options>(study.analysis);
   if (!judge) asked.judge = usual_judge(study.analysis);
   if (asked.judge == Judge::yield && study.analysis.draws == Draws::per_pose) {
     judge->fail("is \"yield\", but errors are drawn anew at each pose, so there are no machines",
@@ -186,27 +186,27 @@ void complete(Study& study, const Reading& reading) {
 }
 
 AtPose monte_carlo_at_pose(const Study& study) {
-  return {static_cast<double>(asked_of<MonteCarloOptions>(study.analysis).quantiles.size()), "quantiles",
+  return {static_cast<double>(asked_of<Options>(study.analysis).quantiles.size()), "quantiles",
           static_cast<double>(study.analysis.samples), "samples"};
 }
 
 void ask_yield(Study& study, double yield) {
   study.analysis.draws = Draws::per_machine;
-  MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
+  Options& asked = asked_of<Options>(study.analysis);
   asked.judge = Judge::yield;
   asked.yield = yield;
 }
 
 }  // namespace
 
-const StudyKind kMonteCarloStudy{.name = "monte-carlo",
-                                 .asks = "what all errors do together",
-                                 .keys = kMonteCarloKeys,
-                                 .varies = Varies::together,
-                                 .draws = Draws::per_machine,
-                                 .rows = monte_carlo_rows,
-                                 .complete = complete,
-                                 .at_pose = monte_carlo_at_pose,
-                                 .ask_yield = ask_yield};
+const StudyKind kStudy{.name = "monte-carlo",
+                       .asks = "what all errors do together",
+                       .keys = kKeys,
+                       .varies = Varies::together,
+                       .draws = Draws::per_machine,
+                       .rows = monte_carlo_rows,
+                       .complete = complete,
+                       .at_pose = monte_carlo_at_pose,
+                       .ask_yield = ask_yield};
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

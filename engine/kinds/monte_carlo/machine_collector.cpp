@@ -9,7 +9,7 @@
 #include "engine/kinds/monte_carlo/yield.h"
 #include "engine/kinds/monte_carlo/yield_by_map.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 
 MachineCollector::Counts::Counts(const MachineTable& table)
     : at_pose({table.plan().poses().size(), table.responses()}),
@@ -71,7 +71,7 @@ std::vector<Estimate> MachineCollector::overall_means() const {
   return estimates;
 }
 
-void MachineCollector::set_columns(const MachineSums& sums, MonteCarloResult& found, MonteCarloColumns& columns) const {
+void MachineCollector::set_columns(const MachineSums& sums, Result& found, MonteCarloColumns& columns) const {
   for (std::size_t m = 0; m < poses(); ++m) {
     found.solves[m] = counts_.solves[m];
     append_failures(0, PoseIndex(m), counts_.failed[m], found.failures);
@@ -123,16 +123,16 @@ EffectResult MachineCollector::effects(const MachineSums& sums, std::span<const 
   return found;
 }
 
-MonteCarloResult MachineCollector::result() && {
+Result MachineCollector::result() && {
   const MachineSums sums = sums_.empty() ? MachineSums(*table_) : std::move(sums_).total();
   MonteCarloColumns columns(poses(), table_->responses(), *analysis_);
-  MonteCarloResult& found = columns.result();
+  Result& found = columns.result();
   set_columns(sums, found, columns);
   const std::vector<BinSpread> spreads = bin_spreads(table_->plan());
   found.machines = machines(sums, spreads);
   found.effects = effects(sums, spreads);
   found.rejected = std::move(counts_.rejected);
-  const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(*analysis_);
+  const Options& asked = asked_of<Options>(*analysis_);
   if (analysis_->limits.empty()) return std::move(found);
   if (asked.judge == Judge::yield) {
     found.verdicts = judge_machines(analysis_->limits, asked.yield, *found.machines->yield, total_of(counts_.solves),
@@ -170,4 +170,4 @@ void MachineCollector::state(Archive& archive, const NumberRange& units) {
   counts_.merge(counts);
 }
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

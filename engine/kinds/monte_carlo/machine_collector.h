@@ -13,7 +13,7 @@
 #include "engine/stats/merge_tree.h"
 #include "engine/stats/quantile_sketch.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 
 /// Merges units (blocks of machines) in their order. UnitFold (run/unit_fold.h) adds the units to an object of this
 /// class. The object keeps a quantile sketch for each response at each pose. Memory hardly grows with the number of
@@ -29,7 +29,7 @@ class MachineCollector {
   /// solved at every pose are left out. The interval assumes that machines are independent.
   std::vector<Estimate> overall_means() const;
   /// The result of all machines that were added. Precondition: no units are added afterwards.
-  MonteCarloResult result() &&;
+  Result result() &&;
 
   /// Reads or writes the sums of the units in this range. Sums that are read are added to those of this object.
   void state(Archive& archive, const NumberRange& units);
@@ -60,7 +60,7 @@ class MachineCollector {
 
   std::size_t poses() const { return table_->plan().poses().size(); }
   /// Sets the numbers of a result that follow from the moments and quantile sketches of the samples.
-  void set_columns(const MachineSums& sums, MonteCarloResult& found, class MonteCarloColumns& columns) const;
+  void set_columns(const MachineSums& sums, Result& found, class MonteCarloColumns& columns) const;
   /// [responses] The values by which machines are judged: the largest magnitude of each machine, or
   /// ValueLimit::deciding() if the limit is not on the magnitude at each pose.
   std::vector<QuantileSketch> judged_values() const;
@@ -73,4 +73,4 @@ class MachineCollector {
   Counts counts_;
 };
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

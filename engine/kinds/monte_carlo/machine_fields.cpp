@@ -8,7 +8,7 @@
 #include "engine/result/result_parts.h"
 #include "engine/stats/main_effects.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 const Axes kByEffectPose{"effect_pose"};
@@ -393,4 +393,4 @@ void append_machine_tables(CsvTables& tables, const StoredResult& result) {
   tables.push_back(index_table(result, "S1_largest", found.effects_on_largest));
 }
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

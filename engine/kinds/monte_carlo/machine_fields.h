@@ -6,7 +6,7 @@
 #include "engine/result/result_file.h"
 
 /// Reads and writes main effects, and the additional results of a Monte Carlo study with draws per machine.
-namespace poesy {
+namespace poesy::monte_carlo {
 
 /// The sizes in bytes of the numbers of main effects, and of the additional results with draws per machine, if the axes
 /// have these lengths.
@@ -33,4 +33,4 @@ std::optional<MachineResult> read_machines(const h5::File& file);
 /// Adds to `tables` yield.csv and the other tables of machines.
 void append_machine_tables(CsvTables& tables, const StoredResult& result);
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -17,7 +17,7 @@
 #include "engine/stats/first_order.h"
 #include "engine/stats/main_effects.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 const MachineResult& machines_of(const StoredResult& result) { return *monte_carlo_of(result).machines; }
@@ -33,7 +33,7 @@ std::string quantile_name(double level) {
 }
 
 Table values_table(const StoredResult& result) {
-  const MonteCarloResult& found = monte_carlo_of(result);
+  const Result& found = monte_carlo_of(result);
   const auto number = [&result](std::string name, std::string heading, const auto& values, int dispensable = 0) {
     return FilledColumn{number_column(std::move(name), std::move(heading), "", dispensable),
                         [&result, &values](std::size_t r) {
@@ -92,7 +92,7 @@ bool has_correlated(const StoredResult& result) {
 /// Whether the response has too few samples that count in statistics (counts()) at a pose over which indices are
 /// summed.
 bool has_too_few_samples(const StoredResult& result, std::size_t r) {
-  const MonteCarloResult& found = monte_carlo_of(result);
+  const Result& found = monte_carlo_of(result);
   return std::ranges::any_of(found.effects.s1_poses,
                              [&](std::uint64_t m) { return found.count(r, m) < kFewestIndexSamples; });
 }
@@ -318,4 +318,4 @@ std::vector<Field> reject_fields(const StoredResult& result, const PoseFigures& 
   return fields;
 }
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -11,7 +11,7 @@
 /// Tables and report sections of main effects, and of the additional results of a Monte Carlo study with draws per
 /// machine. Precondition of all functions with a result, except effect_table() and add_effects_section():
 /// monte_carlo_of(result).machines is set.
-namespace poesy {
+namespace poesy::monte_carlo {
 
 /// A text on the accuracy of the quantiles of some responses: "quantiles to 0.12 % of std". errors, deviations: [all
 /// responses] largest error of a quantile, and standard deviation.
@@ -34,4 +34,4 @@ void add_effects_section(const StoredResult& result, std::span<const Table> tabl
 /// limits.
 std::vector<Field> reject_fields(const StoredResult& result, const PoseFigures& figures);
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -8,7 +8,7 @@
 #include "engine/random/weighted_points.h"
 #include "engine/run/effect_poses.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 ErrorScore score_of(const Distribution& distribution) {
@@ -133,4 +133,4 @@ bool MachineTable::is_fitted(std::size_t n) const {
   return vectors_.rows() > 0 && unit(n).first.value < std::max(kLeast, kForEach * (errors() + 1));
 }
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

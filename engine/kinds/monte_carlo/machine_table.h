@@ -14,7 +14,7 @@
 #include "engine/study/plan.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 
 /// How many machines a unit of work has.
 enum class UnitSize {
@@ -128,4 +128,4 @@ class MachineTable {
   std::vector<PoseIndex> effect_poses_;
 };
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

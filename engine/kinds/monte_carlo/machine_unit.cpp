@@ -8,7 +8,7 @@
 
 #include "engine/base/contract.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 /// How many machines of a range are among the first MachineTable::kept() machines.
@@ -317,4 +317,4 @@ MachineUnit MachineUnitEvaluator::operator()(std::size_t n) {
   return found;
 }
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -22,7 +22,7 @@
 #include "engine/stats/yield_gradient.h"
 
 /// Units of work that solve machines, and sums over machines.
-namespace poesy {
+namespace poesy::monte_carlo {
 
 /// Sums over machines. Their rounding depends on the order of addition, so MergeTree adds them in a fixed order.
 struct MachineSums {
@@ -167,4 +167,4 @@ class MachineUnitEvaluator : private UnitSolver {
   Array<double, axis::Factor, axis::Sample> deciding_;
 };
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

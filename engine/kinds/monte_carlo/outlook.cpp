@@ -18,7 +18,7 @@
 #include "engine/stats/merge_tree.h"
 #include "engine/stats/moments.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 /// The additional memory with draws per machine: a quantile sketch of each response at each pose, the sums in the nodes
@@ -47,7 +47,7 @@ MemoryOutlook monte_carlo_memory(const Study& study, const Model& model, const P
   const std::size_t responses = study.model().responses.size();
   // Numbers that are computed from the quantile sketch of a response at a pose: quantiles with both ends of their
   // intervals, and for Judge::share the share_magnitude.
-  const MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
+  const Options& asked = asked_of<Options>(study.analysis);
   const std::size_t of_sketch = 3 * asked.quantiles.size() + (asked.judge == Judge::share ? 1 : 0);
   const MemoryOutlook of_pose{responses * sizeof(Moments) + sizeof(FailedSamples) + sizeof(SolveCounts) + sizeof(Bytes),
                               responses * (kStoredMoments + (3 + of_sketch) * sizeof(double)) + kStoredSolves,
@@ -74,8 +74,7 @@ MemoryOutlook monte_carlo_memory(const Study& study, const Model& model, const P
   // The next round of adaptive sampling continues from packed quantile sketches (QuantileSketch), one for each response
   // at each finished pose. kPackedSketch: size of one of them in bytes.
   constexpr std::size_t kPackedSketch = 6000;
-  const std::size_t kept =
-      std::min(plan.poses().size() * responses * kPackedSketch, MonteCarloCollector::kMostKeptBytes);
+  const std::size_t kept = std::min(plan.poses().size() * responses * kPackedSketch, Collector::kMostKeptBytes);
   memory.accumulators += kept;
   memory.state += kept;
   return memory;
@@ -143,7 +142,7 @@ class PoseTrial {
   Plan plan_;
   PoseUnit unit_;
   std::optional<MainEffectSums> effects_;
-  std::optional<MonteCarloCollector> collect_;
+  std::optional<Collector> collect_;
 };
 
 /// A small version of a study with draws per machine, at up to kPoses of its poses. Its work is timed to estimate the
@@ -279,4 +278,4 @@ Outlook monte_carlo_outlook(const Study& study, const Model& model, const PoseSe
   return expected;
 }
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -10,7 +10,7 @@
 #include "engine/random/normal_quantile.h"
 #include "engine/stats/rank_correlation.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 double density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi); }
@@ -217,4 +217,4 @@ void add_influence(const PartGroup& group, std::span<const double> x, std::span<
   if (x.size() > 1) add_scores(group, x, influence);
 }
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

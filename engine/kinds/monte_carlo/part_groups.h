@@ -9,7 +9,7 @@
 
 /// How the density of a machine's errors depends on the weight of each measured part in their distribution. Derivation:
 /// theory.md, "Uncertainty from few parts".
-namespace poesy {
+namespace poesy::monte_carlo {
 
 /// Errors that were measured on the same n parts: a single error, or a block of k correlated errors. Value i of each
 /// error belongs to part i.
@@ -45,4 +45,4 @@ PartGroup part_group(std::vector<std::size_t> errors, std::vector<SmoothedValues
 /// weight w_i = 1/n of each of the n parts. These derivatives sum to 0. x: [errors] errors of a machine, SI.
 void add_influence(const PartGroup& group, std::span<const double> x, std::span<double> influence);
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -9,7 +9,7 @@
 #include "engine/base/nan.h"
 #include "engine/random/normal_quantile.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 double density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi); }
@@ -95,4 +95,4 @@ void PartSums::state(Archive& archive) {
   }
 }
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -8,7 +8,7 @@
 #include "engine/kinds/monte_carlo/part_groups.h"
 #include "engine/stats/moments.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 
 /// Sums for the derivative of the probability p that a machine is rejected with respect to the weight of each measured
 /// part. Let f be the density of all errors, in which part i of n has the weight w_i = 1/n. Then
@@ -45,4 +45,4 @@ class PartSums {
   std::vector<double> squares_;            ///< [groups] sum of squared influences over parts and rejected machines
 };
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

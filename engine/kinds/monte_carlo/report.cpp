@@ -26,7 +26,7 @@
 #include "engine/report/sketch_view.h"
 #include "engine/report/tables.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 /// A quantile's name in JSON: "q_0_95".
@@ -42,7 +42,7 @@ std::string quantile_heading(double level) { return "q_" + shortest(level); }
 /// The columns of the table with numbers over the samples of all poses. If the table is too wide, the lowest quantiles
 /// are left out first, and then the smallest value; mean, spread and the highest quantile always stay.
 std::vector<FilledColumn> overall_columns(const StoredResult& result) {
-  const MonteCarloResult& found = monte_carlo_of(result);
+  const Result& found = monte_carlo_of(result);
   const auto number = [&result](std::string name, std::string heading, const auto& values, int dispensable = 0,
                                 std::size_t q = 0) {
     return FilledColumn{
@@ -65,7 +65,7 @@ std::vector<FilledColumn> overall_columns(const StoredResult& result) {
 
 /// A text on the accuracy of the quantiles over all poses.
 std::string overall_error_text(const StoredResult& result) {
-  const MonteCarloResult& found = monte_carlo_of(result);
+  const Result& found = monte_carlo_of(result);
   if (found.overall_quantile_error.empty()) {  // files of version 0.2
     return fmt::format("quantiles to {} of their value", percent_text(found.quantile_relative_error));
   }
@@ -75,7 +75,7 @@ std::string overall_error_text(const StoredResult& result) {
 /// The table of statistics over the samples of all poses, with a row for each response. Precondition: there are poses
 /// and quantiles.
 Table overall_table(const StoredResult& result) {
-  const MonteCarloResult& found = monte_carlo_of(result);
+  const Result& found = monte_carlo_of(result);
   Table table{.name = "overall",
               .caption = fmt::format("{} together: responses over the samples of {}{}",
                                      counted(result.factors.size(), "error varies", "errors vary"),
@@ -108,7 +108,7 @@ void add_worst_pose(std::vector<Cell>& row, std::span<const double> at_poses, co
 }
 
 /// One quantile of a response at all poses.
-std::vector<double> at_poses(const MonteCarloResult::QuantilesAtPoses& quantiles, std::size_t r, std::size_t q) {
+std::vector<double> at_poses(const Result::QuantilesAtPoses& quantiles, std::size_t r, std::size_t q) {
   std::vector<double> values;
   for (std::size_t m = 0; m < quantiles.length<axis::Pose>(); ++m) values.push_back(quantiles(r, m, q));
   return values;
@@ -124,7 +124,7 @@ struct WorstPoses {
   std::vector<std::size_t> alike;  ///< other poses whose intervals reach above `low`, by decreasing quantile
 };
 
-WorstPoses worst_poses(const MonteCarloResult& found, std::size_t r) {
+WorstPoses worst_poses(const Result& found, std::size_t r) {
   const std::size_t highest = found.levels.size() - 1;
   WorstPoses poses{at_poses(found.quantiles, r, highest), 0, kNaN, kNaN, {}};
   poses.worst = worst_pose(poses.quantile);
@@ -138,7 +138,7 @@ WorstPoses worst_poses(const MonteCarloResult& found, std::size_t r) {
 }
 
 std::vector<Cell> poses_row(const StoredResult& result, std::size_t r) {
-  const MonteCarloResult& found = monte_carlo_of(result);
+  const Result& found = monte_carlo_of(result);
   const Unit& unit = display(result.responses[r]);
   const std::span mean = found.mean.row(r);
   const double sum = std::accumulate(mean.begin(), mean.end(), 0.0);
@@ -170,7 +170,7 @@ std::string alike_text(const StoredResult& result, std::size_t r) {
 
 /// The table of the worst poses of each response. Precondition: there are poses and quantiles.
 Table poses_table(const StoredResult& result) {
-  const MonteCarloResult& found = monte_carlo_of(result);
+  const Result& found = monte_carlo_of(result);
   const std::string name = "largest_" + quantile_name(found.levels.back());
   const std::string heading = quantile_heading(found.levels.back());
   Table table{
@@ -201,7 +201,7 @@ struct Outline {
   std::vector<double> below;    ///< share of the samples below x
 };
 
-Outline outline(const MonteCarloResult& found, std::size_t r, double unit) {
+Outline outline(const Result& found, std::size_t r, double unit) {
   const std::span counts = found.histogram_counts.row(r);
   const std::span edges = found.histogram_edges.row(r);
   const double all = static_cast<double>(found.overall_count(r));
@@ -258,7 +258,7 @@ Lines distribution(const StoredResult& result, std::size_t r, ArrayPool& pool) {
 }
 
 void add_how_large(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  const MonteCarloResult& found = monte_carlo_of(result);
+  const Result& found = monte_carlo_of(result);
   Section& section = page.add_section("how-large", "How large are the deviations");
   section.paragraph(fmt::format("All {} vary at once.", counted(result.factors.size(), "error", "errors")));
   section.table(tables, "overall");
@@ -281,7 +281,7 @@ SolveTally tally(const StoredResult& result) {
 /// Adds the section with the mean at each pose, in a band from the lowest to the highest quantile, and with a map of
 /// the workspace.
 void add_where(const StoredResult& result, Page& page) {
-  const MonteCarloResult& found = monte_carlo_of(result);
+  const Result& found = monte_carlo_of(result);
   const std::vector<double>& levels = found.levels;
   const PoseFigures figures(result, shown_cells(result, kSummaryRows), page);
   Lines bands{.x = figures.axis(), .panels = {}};
@@ -356,7 +356,7 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
 
 /// [poses] The weight of each pose for predictions of the yield: the share of machines that are rejected there, summed
 /// over the limits, plus a small amount that is proportional to the root mean square of the limited responses there.
-std::vector<double> pose_weights(const MonteCarloResult& found, const Study& study) {
+std::vector<double> pose_weights(const Result& found, const Study& study) {
   constexpr double kSmall = 1e-6;
   std::vector<double> weights(found.poses(), 0.0);
   for (const ResponseLimit& limit : study.analysis.limits) {
@@ -373,9 +373,9 @@ std::vector<double> pose_weights(const MonteCarloResult& found, const Study& stu
 /// Adds to the page the section that predicts the yield at other sizes of the errors. Adds nothing if there is no
 /// yield, or if machines are calibrated.
 void add_solved_page(const ReportedResult& reported, Page& page) {
-  const MonteCarloResult& found = monte_carlo_of(reported.stored);
+  const Result& found = monte_carlo_of(reported.stored);
   const Study& study = *reported.study;
-  const bool fits = study.analysis.kind == &kMonteCarloStudy && study.analysis.draws == Draws::per_machine &&
+  const bool fits = study.analysis.kind == &kStudy && study.analysis.draws == Draws::per_machine &&
                     study.analysis.factors.size() == reported.stored.factors.size() &&
                     reported.model->description().responses.size() == reported.stored.responses.size();
   if (!fits || !found.machines || !found.machines->yield || study.analysis.calibration != nullptr) return;
@@ -399,7 +399,7 @@ void add_solved_page(const ReportedResult& reported, Page& page) {
 std::string drivers_text(const StoredResult& result, std::size_t r) {
   constexpr std::size_t kMost = 3;
   constexpr double kLittle = 0.1;
-  const MonteCarloResult& found = monte_carlo_of(result);
+  const Result& found = monte_carlo_of(result);
   const MainEffects& effects = found.effects.effects;
   const auto share = [&](std::size_t p) { return effects.s1(r, p); };
   std::vector<std::size_t> order;  // errors with an effect that differs significantly from zero
@@ -478,7 +478,7 @@ std::string advice(const StoredResult& result, std::size_t r) {
 
 /// The summary at the top of the report: the expected values of a response, and its worst pose.
 Answer answer(const StoredResult& result) {
-  const MonteCarloResult& found = monte_carlo_of(result);
+  const Result& found = monte_carlo_of(result);
   if (found.poses() == 0 || found.levels.empty()) return {};
   const std::size_t r = response_named(result, default_ranking(result));
   const NamedUnit& response = result.responses[r];
@@ -525,8 +525,8 @@ void warn(const StoredResult& result, std::vector<std::string>& list) {
 /// response; quantiles are in the order of the levels. The smallest and the largest sample are left out, because they
 /// depend on the number of samples.
 std::vector<std::pair<std::string, std::function<double(std::size_t r)>>> overall(const StoredResult& result) {
-  const MonteCarloResult& found = monte_carlo_of(result);
-  const auto of = [](const MonteCarloResult::Overall& numbers) { return [&](std::size_t r) { return numbers(r); }; };
+  const Result& found = monte_carlo_of(result);
+  const auto of = [](const Result::Overall& numbers) { return [&](std::size_t r) { return numbers(r); }; };
   std::vector<std::pair<std::string, std::function<double(std::size_t)>>> list{
       {"mean", of(found.overall_mean)}, {"standard deviation", of(found.overall_std)}};
   for (std::size_t q = 0; q < found.levels.size(); ++q) {
@@ -544,7 +544,7 @@ std::vector<double> rms_at_poses(const StoredResult& result, std::size_t respons
 /// The shares of errors in the scatter of a limited response, or their first-order indices if there are no shares; and
 /// the root mean square at each pose.
 ErrorShares error_shares(const StoredResult& result) {
-  const MonteCarloResult& found = monte_carlo_of(result);
+  const Result& found = monte_carlo_of(result);
   if (found.poses() == 0) return {};
   const auto shares = response_shares(result);
   const std::size_t r = shares ? shares->response : response_named(result, default_ranking(result));
@@ -560,7 +560,7 @@ ErrorShares error_shares(const StoredResult& result) {
 /// The figures of merit by which two results are compared: the yield, and the root mean square of the response over all
 /// samples. name: name of the response; empty: the yield alone.
 std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
-  const MonteCarloResult& found = monte_carlo_of(result);
+  const Result& found = monte_carlo_of(result);
   std::vector<Merit> list;
   if (result.verdicts && result.verdicts->yield) list.push_back(yield_merit(*result.verdicts->yield));
   if (name.empty() || found.overall_rms.empty()) return list;
@@ -585,7 +585,7 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
 }  // namespace
 
 std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOptions&) {
-  const MonteCarloResult& found = monte_carlo_of(result);
+  const Result& found = monte_carlo_of(result);
   std::vector<Table> tables;
   if (const std::vector<std::string> notes = notes_on_far_limits(result); !notes.empty()) {
     tables.push_back(yield_table(result, *result.verdicts));
@@ -615,7 +615,7 @@ MethodWords method(const StoredResult& result) {
 
 }  // namespace
 
-constinit const ReportKind kMonteCarloReport{
+constinit const ReportKind kReport{
     .tally = tally,
     .tables = monte_carlo_tables,
     .merits = merits,
@@ -631,4 +631,4 @@ constinit const ReportKind kMonteCarloReport{
     .rms_at_poses = rms_at_poses,
     .comparable = comparable};
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -13,17 +13,19 @@
 #include "engine/run/result.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::axis {
 
-namespace axis {
 using Quantile = Axis<"quantile">;     ///< Quantiles that a study asks for.
 using HistogramBin = Axis<"bin">;      ///< Bins of a histogram.
 using HistogramEdge = Axis<"edge">;    ///< Edges of the bins of a histogram.
 using EffectBin = Axis<"effect_bin">;  ///< Bins of an error's values, all of equal probability.
-}  // namespace axis
+
+}  // namespace poesy::axis
+
+namespace poesy::monte_carlo {
 
 /// The options of a Monte Carlo study.
-struct MonteCarloOptions {
+struct Options {
   std::vector<double> quantiles{0.05, 0.5, 0.95};  ///< levels of the quantiles that are computed, ascending
   Judge judge = Judge::rms;  ///< how limits are judged; with draws per machine, the default is Judge::yield
   double share = 0.0;        ///< share of the draws that must be within a limit at each pose; only for Judge::share
@@ -31,7 +33,7 @@ struct MonteCarloOptions {
 };
 
 /// The kind of study in which all errors vary together, `monte-carlo`.
-extern const StudyKind kMonteCarloStudy;
+extern const StudyKind kStudy;
 
 /// The distribution over the machines of a number that each machine has, such as its largest magnitude; SI. Machines
 /// that are not solved at every pose are left out.
@@ -178,7 +180,7 @@ struct EffectResult {
 
 /// The result of a Monte Carlo study, in which all errors vary together; SI; NaN where undefined. Numbers named
 /// `overall` are over the samples of all poses together. `ci_low` and `ci_high` are the ends of confidence intervals.
-struct MonteCarloResult {
+struct Result {
   using AtPoses = Array<double, axis::Response, axis::Pose>;                           ///< a number at each pose
   using QuantilesAtPoses = Array<double, axis::Response, axis::Pose, axis::Quantile>;  ///< all quantiles at each pose
   using Overall = MachineValues::Numbers;                                              ///< a number for each response
@@ -250,11 +252,11 @@ std::size_t monte_carlo_bytes(const AxisLengths& lengths, bool machines);
 
 /// The Monte Carlo result in a stored result. Its `failures`, `convergence` and `verdicts` are in StoredResult itself.
 /// Precondition: the result is of kind `monte-carlo`.
-inline const MonteCarloResult& monte_carlo_of(const StoredResult& result) { return found_of<MonteCarloResult>(result); }
+inline const Result& monte_carlo_of(const StoredResult& result) { return found_of<Result>(result); }
 
 /// The tables of a Monte Carlo result: statistics of each response over the samples of all poses, the worst poses of
 /// each response, and first-order indices. With draws per machine there are also tables of the machines; with limits
 /// also of the yield, of the errors on which it depends, and of the poses at which machines are rejected.
 std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOptions& options = {});
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -16,11 +16,11 @@
 #include "engine/run/rounds.h"
 #include "engine/run/unit_fold.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 /// [responses] The mean over the samples of all poses, with its interval.
-std::vector<Estimate> overall_means(const MonteCarloResult& found) {
+std::vector<Estimate> overall_means(const Result& found) {
   std::vector<Estimate> means;
   for (std::size_t r = 0; r < found.responses(); ++r) {
     means.push_back(stratified_mean({found.count.row(r), found.mean.row(r), found.std.row(r)}, found.conf_level));
@@ -46,19 +46,15 @@ struct PoseJob {
 
   static constexpr std::string_view kName = "monte-carlo";
   std::size_t responses() const { return model.description().responses.size(); }
-  std::vector<std::uint64_t> sizes() const {
-    return {responses(), asked_of<MonteCarloOptions>(analysis).quantiles.size()};
-  }
+  std::vector<std::uint64_t> sizes() const { return {responses(), asked_of<Options>(analysis).quantiles.size()}; }
   Rounds::Rule rule() const { return rule_of(model, analysis); }
   PoseUnitEvaluator worker() const { return {plan, model}; }
   void unit_state(Archive& archive, const WorkUnit& unit, PoseUnit& found) const {
     if (archive.reads()) found.responses.resize(responses());
     found.state(archive, plan.factors().size(), unit.first.value);
   }
-  MonteCarloCollector sums(const Plan& of, const Shard&) const { return {of, responses(), analysis, keeps_checkpoint}; }
-  static std::vector<Estimate> estimates(const MonteCarloCollector& sums, std::size_t) {
-    return overall_means(sums.finished());
-  }
+  Collector sums(const Plan& of, const Shard&) const { return {of, responses(), analysis, keeps_checkpoint}; }
+  static std::vector<Estimate> estimates(const Collector& sums, std::size_t) { return overall_means(sums.finished()); }
 };
 
 /// The job of a UnitFold (run/unit_fold.h): solves units of machines at all poses, for a study that draws errors per
@@ -112,12 +108,12 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
 
 }  // namespace
 
-std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,
-                                                const RunOptions& options, const MachineCalibration* calibration) {
-  const auto run = [&](auto work, const auto& result_of) -> std::optional<MonteCarloResult> {
+std::optional<Result> run_monte_carlo(const Plan& plan, const Model& model, const Analysis& analysis,
+                                      const RunOptions& options, const MachineCalibration* calibration) {
+  const auto run = [&](auto work, const auto& result_of) -> std::optional<Result> {
     if (!fold(work, options) || options.shard) return std::nullopt;
     std::optional<ConvergenceResult> convergence = work.convergence();
-    MonteCarloResult found = result_of(work);
+    Result found = result_of(work);
     found.convergence = std::move(convergence);
     leave_out_constant(joint_rounding(plan, model), found);
     return found;
@@ -130,9 +126,7 @@ std::optional<MonteCarloResult> run_monte_carlo(const Plan& plan, const Model& m
   return run(PoseFold(plan, job, options), [](auto& work) { return std::move(work.sums()).result(); });
 }
 
-constinit const Kind kMonteCarloKind{.study = kMonteCarloStudy,
-                                     .run = {run_study_of_kind, monte_carlo_outlook, most_shards},
-                                     .file = kMonteCarloFile,
-                                     .report = kMonteCarloReport};
+constinit const Kind kKind{
+    .study = kStudy, .run = {run_study_of_kind, monte_carlo_outlook, most_shards}, .file = kFile, .report = kReport};
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -10,7 +10,7 @@
 #include "engine/stats/indices.h"
 #include "engine/stats/proportion.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 double share(std::uint64_t part, std::uint64_t all) { return static_cast<double>(part) / static_cast<double>(all); }
@@ -61,7 +61,7 @@ void leave_out(MainEffects& effects, Positions... at) {
 
 MachineValues machine_values(std::span<const Moments> moments, std::span<const QuantileSketch> sketches,
                              const Analysis& analysis) {
-  const std::vector<double>& levels = asked_of<MonteCarloOptions>(analysis).quantiles;
+  const std::vector<double>& levels = asked_of<Options>(analysis).quantiles;
   MachineValues values = values_of(moments.size(), levels.size());
   for (std::size_t r = 0; r < moments.size(); ++r) {
     const bool none = moments[r].count() == 0;
@@ -191,7 +191,7 @@ void leave_out_curves_per_pose(const Plan& plan, MainEffects& effects) {
   }
 }
 
-void leave_out_constant(std::span<const double> rounding, MonteCarloResult& found) {
+void leave_out_constant(std::span<const double> rounding, Result& found) {
   make_room({found.responses()}, found.varies);
   for (std::size_t r = 0; r < found.responses(); ++r) {
     const std::span at_poses = found.std.row(r);
@@ -270,4 +270,4 @@ LimitVerdicts judge_machines(std::span<const ResponseLimit> limits, double asked
   return verdicts;
 }
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -14,7 +14,7 @@
 #include "engine/study/study.h"
 
 /// Computes the numbers of a result from counts and sums over machines.
-namespace poesy {
+namespace poesy::monte_carlo {
 
 /// Sets an estimate at these positions: its value, and both ends of its interval, in three lists.
 template <class Values, class... Positions>
@@ -66,7 +66,7 @@ void leave_out_curves_per_pose(const Plan& plan, MainEffects& effects);
 /// Sets indices and curves to NaN for responses that do not vary (stats/indices.h) at the poses over which the
 /// variances of indices are summed, or between machines. Records in found.varies which responses vary at some pose, if
 /// not all do. rounding: [responses] see joint_rounding() (run/response_rounding.h).
-void leave_out_constant(std::span<const double> rounding, MonteCarloResult& found);
+void leave_out_constant(std::span<const double> rounding, Result& found);
 
 /// [errors] The distribution of each error within its bins of equal probability.
 std::vector<BinSpread> bin_spreads(const Plan& plan);
@@ -87,4 +87,4 @@ LimitVerdicts judge_machines(std::span<const ResponseLimit> limits, double asked
                              const SolveCounts& solves, const MachineCounts& counts,
                              std::span<const QuantileSketch> judged);
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

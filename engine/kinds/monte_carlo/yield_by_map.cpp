@@ -14,7 +14,7 @@
 #include "engine/stats/mapped_gradient.h"
 #include "engine/stats/mean_square_shares.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 /// The positions of the components of one vector, at all poses, in the list of all fitted components.
@@ -155,4 +155,4 @@ void set_first_order(const MachineTable& table, const std::optional<LinearFit>& 
   if (!rejected.empty()) set_gradient(table, *fit, rejected, conf_level, yield);
 }
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

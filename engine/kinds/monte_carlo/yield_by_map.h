@@ -8,7 +8,7 @@
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/stats/linear_fit.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 
 /// Sets the numbers of the yield that follow from the linear map from the errors to the limited vectors
 /// (LimitedVector). fit: the map, fitted to the first machines of the study; none if it could not be fitted. The
@@ -22,4 +22,4 @@ namespace poesy {
 void set_first_order(const MachineTable& table, const std::optional<LinearFit>& fit,
                      std::span<const std::uint8_t> rejected, double conf_level, YieldResult& yield);
 
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

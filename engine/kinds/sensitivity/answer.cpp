@@ -23,7 +23,7 @@
 #include "engine/schema/settings.h"
 #include "engine/stats/tolerance.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 /// The errors that cause most of the mean square of the response by which errors are ranked, and those that together
@@ -327,4 +327,4 @@ Answer sensitivity_answer(const StoredResult& result) {
   return lines;
 }
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

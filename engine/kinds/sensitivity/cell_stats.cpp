@@ -4,7 +4,7 @@
 
 #include "engine/base/contract.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 template <class T>
@@ -54,4 +54,4 @@ void CellStats::merge(CellStats later) {
   }
 }
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

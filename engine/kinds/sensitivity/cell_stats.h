@@ -8,7 +8,7 @@
 #include "engine/run/shard.h"
 #include "engine/stats/moments.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 
 /// Statistics of the samples in consecutive cells. A cell is one error at one pose. Each response has its own list, so
 /// that its memory can be freed separately.
@@ -37,4 +37,4 @@ struct CellStats {
   void merge(CellStats later);
 };
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

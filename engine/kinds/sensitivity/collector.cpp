@@ -7,7 +7,7 @@
 #include "engine/base/contract.h"
 #include "engine/run/evaluate_unit.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 void append(const Estimate& estimate, EstimateCourse& history) {
@@ -50,7 +50,7 @@ void HistoryCollector::add(std::size_t cell, std::size_t point, std::span<const 
   for (std::size_t r = 0; r < responses_; ++r) at.global.push_back(global_index(local.row(r), conf_level_));
 }
 
-EstimateCourse HistoryCollector::history(const SensitivityResult& end) const {
+EstimateCourse HistoryCollector::history(const Result& end) const {
   EstimateCourse history;
   history.conf_level = conf_level_;
   history.samples.assign(points_.begin(), points_.end());
@@ -101,18 +101,17 @@ void HistoryCollector::state(Archive& archive, std::span<const std::size_t> unit
   }
 }
 
-SensitivityCollector::SensitivityCollector(const Plan& plan, std::size_t responses, double conf_level,
-                                           const Shard& shard)
+Collector::Collector(const Plan& plan, std::size_t responses, double conf_level, const Shard& shard)
     : CellSums(plan, responses, shard), history_(plan, responses, conf_level) {}
 
-void SensitivityCollector::add(const WorkUnit& unit, const CellUnit& found) {
+void Collector::add(const WorkUnit& unit, const CellUnit& found) {
   CellSums::add(unit, found);
   history_.add(unit, found.within, store_of(unit).at(cell_of(unit) - cells_.first));
 }
 
-void SensitivityCollector::state(Archive& archive, std::size_t samples) {
+void Collector::state(Archive& archive, std::size_t samples) {
   const std::vector<std::size_t> units = CellSums::state(archive, samples);
   history_.state(archive, units, samples);
 }
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

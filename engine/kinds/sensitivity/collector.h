@@ -14,7 +14,7 @@
 #include "engine/stats/indices.h"
 #include "engine/study/plan.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 
 /// Computes, while units are merged, how the global indices of a sensitivity study develop with the number of samples.
 /// The indices are computed at the history points, which are fixed numbers of samples such as 100, 200 and 500
@@ -34,7 +34,7 @@ class HistoryCollector {
   void add(const WorkUnit& unit, std::span<const LocalIndex> within, const UnitStats& cell);
   /// The indices at all history points, ending with the final result `end`. Precondition: all units of all cells were
   /// added.
-  EstimateCourse history(const SensitivityResult& end) const;
+  EstimateCourse history(const Result& end) const;
 
   /// Writes the indices at all history points, or reads them and adds them to those of this object. samples: number of
   /// samples of the study that wrote them, at most the number of this study. units_done: [cells] number of units of
@@ -70,16 +70,16 @@ class HistoryCollector {
 
 /// Merges the units of a sensitivity study, cell by cell; a cell is one error at one pose. PoseFold (run/pose_fold.h)
 /// adds the units to an object of this class. The result of a cell depends only on the order of its own units.
-class SensitivityCollector : public CellSums<CellStats> {
+class Collector : public CellSums<CellStats> {
  public:
   /// Collects the cells of this shard of the plan. Keeps a reference to the plan.
-  SensitivityCollector(const Plan& plan, std::size_t responses, double conf_level, const Shard& shard = Shard());
+  Collector(const Plan& plan, std::size_t responses, double conf_level, const Shard& shard = Shard());
 
   /// Adds a unit. Precondition: it is the next unit of its cell.
   void add(const WorkUnit& unit, const CellUnit& found);
   /// The indices at the history points, ending with those of `end`. Precondition: all units of all cells were added,
   /// and the study has a fixed number of samples.
-  EstimateCourse history(const SensitivityResult& end) const { return history_.history(end); }
+  EstimateCourse history(const Result& end) const { return history_.history(end); }
   /// Writes the statistics of all cells; or reads those that a study with `samples` samples at each pose wrote, and
   /// adds them.
   void state(Archive& archive, std::size_t samples);
@@ -88,4 +88,4 @@ class SensitivityCollector : public CellSums<CellStats> {
   HistoryCollector history_;
 };
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

@@ -12,7 +12,7 @@
 #include "engine/report/display.h"
 #include "engine/stats/indices.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 /// A standard deviation of a response below this number, SI, may be rounding of the solver. It is kIndexRounding times
@@ -21,8 +21,8 @@ constexpr double kSpreadRounding = 1e-13;
 
 /// The results at two fidelities, with the dimensions of the responses and the standard deviations of the errors.
 struct BothFidelities {
-  const SensitivityResult& first;
-  const SensitivityResult& second;
+  const Result& first;
+  const Result& second;
   std::span<const Dimension> dimensions;
   std::span<const double> sigma;
 
@@ -32,7 +32,7 @@ struct BothFidelities {
 
   /// The effect of an error: its largest index over all responses of the same dimension as `response`. NaN if an index
   /// is unknown.
-  double effect(const SensitivityResult& result, std::size_t response, std::size_t factor) const {
+  double effect(const Result& result, std::size_t response, std::size_t factor) const {
     double largest = 0.0;
     for (std::size_t r = 0; r < result.responses(); ++r) {
       const double index = result.global(r, factor);
@@ -44,7 +44,7 @@ struct BothFidelities {
   }
 
   /// How much an error shifts a response: the mean of the response minus the response to the background alone.
-  static double growth(const SensitivityResult& result, std::size_t response, std::size_t factor, std::size_t pose) {
+  static double growth(const Result& result, std::size_t response, std::size_t factor, std::size_t pose) {
     return result.mean(response, factor, pose) - result.background(response, pose);
   }
 
@@ -162,9 +162,8 @@ std::vector<double> largest_magnitudes(const Measure& measure) {
 
 }  // namespace
 
-FidelityResult compare_fidelities(const SensitivityResult& first, const SensitivityResult& second,
-                                  std::span<const Dimension> dimensions, std::span<const double> sigma,
-                                  double linearity) {
+FidelityResult compare_fidelities(const Result& first, const Result& second, std::span<const Dimension> dimensions,
+                                  std::span<const double> sigma, double linearity) {
   POESY_EXPECTS(first.mean.lengths() == second.mean.lengths());
   POESY_EXPECTS(dimensions.size() == first.responses() && sigma.size() == first.factors());
   const BothFidelities both{first, second, dimensions, sigma};
@@ -210,7 +209,7 @@ std::optional<FidelityResult> read_fidelity(const h5::File& file) {
 }
 
 void append_fidelity_tables(CsvTables& tables, const StoredResult& result) {
-  const SensitivityResult& first = sensitivity_of(result);
+  const Result& first = sensitivity_of(result);
   if (!first.fidelity) return;
   const Fidelity& found = *first.fidelity;
   CsvTable table = lines_of_factors(result, "fidelity");
@@ -267,4 +266,4 @@ void add_fidelity_section(const StoredResult& result, std::span<const Table> tab
   section.table(tables, "fidelity");
 }
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

@@ -8,7 +8,7 @@
 #include "engine/report/html/page.h"
 #include "engine/result/result_parts.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 
 /// Compares two sensitivity results of the same draws at two fidelities of a model. dimensions: [responses] dimension
 /// of each response. sigma: [errors] standard deviation of each error, SI. linearity: the largest nonlinearity and
@@ -32,9 +32,8 @@ namespace poesy {
 /// is rounding too, otherwise infinite. An error is not called linear if an index is unknown, or if the two fidelities
 /// solved different numbers of samples, because linearity was not shown. A verdict holds for errors of the study's
 /// size; larger errors may be nonlinear. The member `fidelities` of the result is left empty.
-FidelityResult compare_fidelities(const SensitivityResult& first, const SensitivityResult& second,
-                                  std::span<const Dimension> dimensions, std::span<const double> sigma,
-                                  double linearity);
+FidelityResult compare_fidelities(const Result& first, const Result& second, std::span<const Dimension> dimensions,
+                                  std::span<const double> sigma, double linearity);
 
 /// Writes and reads the comparison of two fidelities, the group /fidelity of a result file. Writes nothing, and reads
 /// nothing, if the study compares no fidelities.
@@ -51,4 +50,4 @@ Table fidelity_table(const StoredResult& result, const RankedErrors& ranked);
 /// Adds to the page the section on fidelities, if the study compares two.
 void add_fidelity_section(const StoredResult& result, std::span<const Table> tables, Page& page);
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

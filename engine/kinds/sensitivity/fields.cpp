@@ -9,10 +9,10 @@
 #include "engine/kinds/sensitivity/tolerances.h"
 #include "engine/result/result_parts.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
-using Indices = SensitivityResult;
+using Indices = Result;
 
 const std::vector<Attribute<Indices>> kLevel{{"conf_level", &Indices::conf_level}};
 
@@ -155,7 +155,7 @@ void append_solver_tables(CsvTables& tables, const StoredResult& result) {
 }
 
 void write(ResultBuilder& result, const Study& study, std::any& any) {
-  const auto& found = std::any_cast<const SensitivityResult&>(any);
+  const auto& found = std::any_cast<const Result&>(any);
   const std::vector<FactorIndex>& factors = study.analysis.factors;
   POESY_EXPECTS(found.factors() == factors.size());
   add_names(result, study, factors);
@@ -173,7 +173,7 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
 }
 
 void read(const h5::File& file, StoredResult& result) {
-  SensitivityResult found;
+  Result found;
   read_sigma(file, result);
   read_group(file, kIndices, found);
   found.solves = read_solver<decltype(found.solves)>(file);
@@ -208,6 +208,6 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
 
 std::size_t sensitivity_bytes(const AxisLengths& lengths) { return bytes_of(kIndices.fields, lengths); }
 
-constinit const FileKind kSensitivityFile{.write = write, .read = read, .append_tables = append_tables};
+constinit const FileKind kFile{.write = write, .read = read, .append_tables = append_tables};
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

@@ -13,7 +13,7 @@
 #include "engine/stats/rank_correlation.h"
 #include "engine/stats/tolerance.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 bool same_poses(const StoredResult& a, const StoredResult& b) {
@@ -112,7 +112,7 @@ double total_rms(const StoredResult& result, std::size_t response) {
 }  // namespace
 
 SolveTally sensitivity_tally(const StoredResult& result) {
-  const SensitivityResult& found = sensitivity_of(result);
+  const Result& found = sensitivity_of(result);
   SolveTally made{"error", names_of(result.factors), result.poses.size(), {found.solves.begin(), found.solves.end()}};
   if (!found.fidelity) return made;
   const FidelityResult& compared = *found.fidelity;
@@ -130,8 +130,7 @@ ShownCells sensitivity_cells(const StoredResult& result) {
   return shown_cells(result, result.factors.size() * (result.time.empty() ? 1 : 2));
 }
 
-std::vector<double> in_shown_units(const StoredResult& result, const SensitivityResult::Indices& indices,
-                                   bool as_effect) {
+std::vector<double> in_shown_units(const StoredResult& result, const Result::Indices& indices, bool as_effect) {
   std::vector<double> list;
   for (const std::size_t r : response_order(result)) {
     for (std::size_t p = 0; p < result.factors.size(); ++p) {
@@ -156,7 +155,7 @@ std::vector<std::vector<std::string>> units_of_indices(const StoredResult& resul
 }
 
 ErrorCells local_effects(const StoredResult& result, std::size_t response) {
-  const SensitivityResult& found = sensitivity_of(result);
+  const Result& found = sensitivity_of(result);
   ErrorCells effects({found.factors(), found.poses()});
   for (std::size_t p = 0; p < found.factors(); ++p) {
     for (std::size_t m = 0; m < found.poses(); ++m) {
@@ -244,4 +243,4 @@ void compare_sensitivity(const ReportedResult& a, const ReportedResult& b, const
   add_where(a.stored, b.stored, page);
 }
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

@@ -11,7 +11,7 @@
 #include "engine/report/report_kind.h"
 
 /// Figures for the page of one sensitivity result and for the page that compares two results.
-namespace poesy {
+namespace poesy::sensitivity {
 
 /// How the solves ended, for each error and pose.
 SolveTally sensitivity_tally(const StoredResult& result);
@@ -22,8 +22,7 @@ ShownCells sensitivity_cells(const StoredResult& result);
 
 /// [responses x errors] Indices in display units, either as effects (index x sigma) or as they are, with the responses
 /// in the order of response_order().
-std::vector<double> in_shown_units(const StoredResult& result, const SensitivityResult::Indices& indices,
-                                   bool as_effect);
+std::vector<double> in_shown_units(const StoredResult& result, const Result::Indices& indices, bool as_effect);
 
 /// The display units of indices: for each response, one unit if indices are shown as effects ("mm"), otherwise a unit
 /// for each error ("mm/deg").
@@ -80,4 +79,4 @@ std::vector<Merit> sensitivity_merits(const StoredResult& result, std::string_vi
 /// differ.
 void compare_sensitivity(const ReportedResult& a, const ReportedResult& b, const Comparison& compared, Page& page);
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

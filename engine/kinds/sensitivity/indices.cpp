@@ -9,7 +9,7 @@
 #include "engine/run/result.h"
 #include "engine/stats/indices.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 std::vector<LocalIndex> local_indices(std::span<const Moments> at_poses, double sigma) {
@@ -42,7 +42,7 @@ class CellNumbers {
     count_.push_back(moments.count());
   }
 
-  void move_to(SensitivityResult& result, const std::array<std::size_t, 3>& lengths) && {
+  void move_to(Result& result, const std::array<std::size_t, 3>& lengths) && {
     std::size_t k = 0;
     for (auto* cells : {&result.local, &result.local_ci_low, &result.local_ci_high, &result.mean, &result.std}) {
       *cells = {lengths, std::move(numbers_[k++])};
@@ -56,8 +56,7 @@ class CellNumbers {
 };
 
 /// Sets the global indices of one error for one response.
-void set_global(std::span<const Moments> at_poses, std::size_t r, std::size_t p, double sigma,
-                SensitivityResult& result) {
+void set_global(std::span<const Moments> at_poses, std::size_t r, std::size_t p, double sigma, Result& result) {
   const auto set = [&](const Estimate& index, auto& value, auto& low, auto& high) {
     value(r, p) = index.value;
     low(r, p) = index.interval.low;
@@ -97,21 +96,20 @@ std::vector<Estimate> global_indices(const CellStats& at_poses, double sigma, do
   return indices;
 }
 
-SensitivityResult sensitivity_result(const Plan& plan, CellStats cells,
-                                     Array<double, axis::Response, axis::Pose> background, std::vector<double> rounding,
-                                     double conf_level) {
+Result sensitivity_result(const Plan& plan, CellStats cells, Array<double, axis::Response, axis::Pose> background,
+                          std::vector<double> rounding, double conf_level) {
   const std::size_t responses = cells.responses.size();
   const std::size_t factors = plan.factors().size();
   const std::size_t poses = plan.poses().size();
   POESY_EXPECTS(cells.size() == factors * poses && cells.size() > 0);
-  SensitivityResult result;
+  Result result;
   result.conf_level = conf_level;
   POESY_EXPECTS(background.lengths() == (std::array{responses, poses}));
   result.background = std::move(background);
   result.rounding = {{responses}, std::move(rounding)};
   for (auto* indices : {&result.global, &result.global_ci_low, &result.global_ci_high, &result.global_corrected,
                         &result.global_corrected_ci_low, &result.global_corrected_ci_high}) {
-    *indices = SensitivityResult::Indices({responses, factors});
+    *indices = Result::Indices({responses, factors});
   }
   CellNumbers numbers(responses * cells.size());
   for (std::size_t r = 0; r < responses; ++r) {
@@ -131,12 +129,12 @@ SensitivityResult sensitivity_result(const Plan& plan, CellStats cells,
   return result;
 }
 
-double index_rounding(const SensitivityResult& result, std::size_t response, double sigma) {
+double index_rounding(const Result& result, std::size_t response, double sigma) {
   return index_rounding(result.rounding(response), sigma);
 }
 
-ResponseStudy response_study(const SensitivityResult& result, std::span<const double> sigma,
-                             std::span<const double> error_mean, std::size_t response) {
+ResponseStudy response_study(const Result& result, std::span<const double> sigma, std::span<const double> error_mean,
+                             std::size_t response) {
   const std::array lengths{result.factors(), result.poses()};
   POESY_EXPECTS(sigma.size() == result.factors());
   std::vector<double> index;
@@ -152,10 +150,9 @@ ResponseStudy response_study(const SensitivityResult& result, std::span<const do
           .error_mean = error_mean};
 }
 
-Tolerances response_tolerances(const SensitivityResult& result, std::span<const double> sigma,
-                               std::span<const double> error_mean, std::size_t response,
-                               const std::optional<ReferenceError>& reference) {
+Tolerances response_tolerances(const Result& result, std::span<const double> sigma, std::span<const double> error_mean,
+                               std::size_t response, const std::optional<ReferenceError>& reference) {
   return tolerances(response_study(result, sigma, error_mean, response), reference);
 }
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

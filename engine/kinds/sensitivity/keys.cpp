@@ -9,11 +9,11 @@
 #include "engine/study/study.h"
 #include "engine/study/study_kind.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
-constexpr std::array<std::string_view, 7> kSensitivityKeys{"factors",     "samples",   "conf_level", "background",
-                                                           "calibration", "linearity", "reference"};
+constexpr std::array<std::string_view, 7> kKeys{"factors",     "samples",   "conf_level", "background",
+                                                "calibration", "linearity", "reference"};
 
 const InnerRows<ToleranceReference>& reference_keys() {
   static const InnerRows<ToleranceReference> keys{
@@ -41,12 +41,12 @@ void read_reference(const StudyValue& value, Study& study, const Reading&) {
   }
   const Dimension dimension = factors[named.value].dimension;
   const auto tolerance = section.find("tolerance");
-  asked_of<SensitivityOptions>(study.analysis).reference = {
+  asked_of<Options>(study.analysis).reference = {
       named, tolerance ? tolerance->positive_quantity(dimension) : display_unit(dimension).si};
 }
 
 std::string reference_line(const Study& study) {
-  const auto& reference = asked_of<SensitivityOptions>(study.analysis).reference;
+  const auto& reference = asked_of<Options>(study.analysis).reference;
   if (!reference) return {};
   const Factor& factor = study.model().factors[reference->factor.value];
   return fmt::format("reference = {{ factor = {}, tolerance = {} }}\n", in_quotes(factor.name),
@@ -61,7 +61,7 @@ std::string shown_reference(const TemplateLines& lines, const Study& study) {
                      example_size(factor.dimension, 1.0));
 }
 
-KeyValue<Study> linearity() { return asked_value(number_at(between_0_and_1("0.01"), &SensitivityOptions::linearity)); }
+KeyValue<Study> linearity() { return asked_value(number_at(between_0_and_1("0.01"), &Options::linearity)); }
 
 std::string linearity_line(const Study& study) {
   return study.mechanism.compared ? "linearity = " + linearity().text(study) + "\n" : "";
@@ -102,7 +102,7 @@ void complete_sensitivity(Study& study, const Reading& reading) {
 }
 
 void check_reference(const StudySection& analysis, const Study& study, const Model& model) {
-  const auto& reference = asked_of<SensitivityOptions>(study.analysis).reference;
+  const auto& reference = asked_of<Options>(study.analysis).reference;
   if (!reference) return;
   const auto problem = beyond_bound(model, reference->factor, reference->tolerance, "a tolerance");
   if (problem) refuse_error(analysis.section("reference"), "tolerance", *problem);
@@ -117,17 +117,17 @@ AtPose sensitivity_at_pose(const Study& study) {
 
 }  // namespace
 
-const StudyKind kSensitivityStudy{.name = "sensitivity",
-                                  .asks = "what each error does on its own",
-                                  .keys = kSensitivityKeys,
-                                  .varies = Varies::one_by_one,
-                                  .compares_fidelities = true,
-                                  .usual_factors = "deforming",
-                                  .usual_background = "benign",
-                                  .rows = sensitivity_rows,
-                                  .tables = [] { return StudyTables{described(reference_keys())}; },
-                                  .complete = complete_sensitivity,
-                                  .check_errors = check_reference,
-                                  .at_pose = sensitivity_at_pose};
+const StudyKind kStudy{.name = "sensitivity",
+                       .asks = "what each error does on its own",
+                       .keys = kKeys,
+                       .varies = Varies::one_by_one,
+                       .compares_fidelities = true,
+                       .usual_factors = "deforming",
+                       .usual_background = "benign",
+                       .rows = sensitivity_rows,
+                       .tables = [] { return StudyTables{described(reference_keys())}; },
+                       .complete = complete_sensitivity,
+                       .check_errors = check_reference,
+                       .at_pose = sensitivity_at_pose};
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

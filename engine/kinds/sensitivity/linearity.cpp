@@ -22,7 +22,7 @@
 #include "engine/stats/indices.h"
 #include "engine/stats/sums.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 /// The number of sizes at which each draw is solved: the size in the study, and a tenth of it.
@@ -92,7 +92,7 @@ struct ChangeSums {
   std::vector<double> rounding;  ///< [responses] rounding of each response
   /// The local indices of the error that is being collected, at the poses collected so far.
   Array<std::vector<LocalIndex>, ErrorSize, axis::Response> at_poses;
-  SensitivityResult::Indices changes;
+  Result::Indices changes;
 
   ChangeSums(const Plan& of, std::vector<double> of_responses)
       : plan(&of),
@@ -173,8 +173,7 @@ std::optional<double> size_to_study(const ResponseTolerances& tolerances, std::s
 
 }  // namespace
 
-std::optional<SensitivityResult::Indices> index_changes(const Plan& plan, const Model& model,
-                                                        const RunOptions& options) {
+std::optional<Result::Indices> index_changes(const Plan& plan, const Model& model, const RunOptions& options) {
   POESY_EXPECTS(plan.slots() == plan.factors().size());
   RunOptions without_state = options;
   without_state.checkpoints = nullptr;
@@ -276,4 +275,4 @@ std::string wrong_sizes_text(const StoredResult& result, const ResponseTolerance
       some_names(list, kMostNames));
 }
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

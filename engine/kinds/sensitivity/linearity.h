@@ -15,7 +15,7 @@
 
 /// Checks whether the indices of a sensitivity study also hold for errors of other sizes. Each run of a sensitivity
 /// study makes this check, and its result states the outcome.
-namespace poesy {
+namespace poesy::sensitivity {
 
 /// The number of draws of each error that are solved again to check linearity, at up to kSomePoses poses
 /// (run/evaluate_unit.h), at the study's size and at a tenth of it. They are the first draws of the study, or all if
@@ -38,8 +38,7 @@ inline constexpr double kSmallerSize = 0.1;
 /// All ranks run this function and have the same result, with the same bits for any number of threads. It has no
 /// checkpoint: if a run is stopped during this function, a continued run calls it again from the start. Returns nothing
 /// if the run was stopped. Precondition: the plan is that of a sensitivity study.
-std::optional<SensitivityResult::Indices> index_changes(const Plan& plan, const Model& model,
-                                                        const RunOptions& options);
+std::optional<Result::Indices> index_changes(const Plan& plan, const Model& model, const RunOptions& options);
 
 /// The number of solves that index_changes() makes.
 double index_change_solves(const Plan& plan);
@@ -87,4 +86,4 @@ inline constexpr double kSameSize = 2.0;
 /// study at the named size proposes about that size as the tolerance. Empty if there are no such errors.
 std::string wrong_sizes_text(const StoredResult& result, const ResponseTolerances& tolerances);
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

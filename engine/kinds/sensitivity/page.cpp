@@ -22,7 +22,7 @@
 #include "engine/stats/indices.h"
 #include "engine/stats/tolerance.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 /// An interval is called wide if one of its ends is farther from the index than this share of the index.
@@ -35,7 +35,7 @@ constexpr std::string_view kCorrected =
 BarQuantity bar_quantity(const StoredResult& result, bool as_effect, ArrayPool& pool) {
   const GlobalIndices shown = shown_indices(result);
   const std::string name = as_effect ? "global_effect" : "global_index";
-  const auto add = [&](const std::string& suffix, const SensitivityResult::Indices& indices) {
+  const auto add = [&](const std::string& suffix, const Result::Indices& indices) {
     return pool.add(name + suffix, in_shown_units(result, indices, as_effect));
   };
   return {as_effect ? "effect at the size the study sets (index x sigma)" : "global index",
@@ -179,7 +179,7 @@ void add_how_sure(const StoredResult& result, std::span<const Table> tables, Pag
 }
 
 void warn_of_unknown_indices(const StoredResult& result, std::vector<std::string>& list) {
-  const SensitivityResult& found = sensitivity_of(result);
+  const Result& found = sensitivity_of(result);
   std::vector<std::string> unknown;
   for (std::size_t p = 0; p < found.factors(); ++p) {
     bool known = true;
@@ -224,7 +224,7 @@ void warn_of_sizes(const StoredResult& result, std::vector<std::string>& list) {
 }
 
 void warn_of_wide_intervals(const StoredResult& result, std::vector<std::string>& list) {
-  const SensitivityResult& found = sensitivity_of(result);
+  const Result& found = sensitivity_of(result);
   const GlobalIndices shown = shown_indices(result);
   std::size_t wide = 0;
   std::size_t all = 0;
@@ -253,7 +253,7 @@ void warn_of_wide_intervals(const StoredResult& result, std::vector<std::string>
 }
 
 std::vector<double> rms_at_poses(const StoredResult& result, std::size_t response) {
-  const SensitivityResult& found = sensitivity_of(result);
+  const Result& found = sensitivity_of(result);
   ErrorCells effects({found.factors(), found.poses()});
   for (std::size_t p = 0; p < found.factors(); ++p) {
     for (std::size_t m = 0; m < found.poses(); ++m) {
@@ -309,21 +309,21 @@ MethodWords method(const StoredResult&) {
 
 }  // namespace
 
-constinit const ReportKind kSensitivityReport{.tally = sensitivity_tally,
-                                              .tables = sensitivity_tables,
-                                              .two_rankings = two_rankings,
-                                              .merits = sensitivity_merits,
-                                              .sorts = true,
-                                              .settling = settling,
-                                              .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
-                                              .method = method,
-                                              .warn = warn,
-                                              .answer = sensitivity_answer,
-                                              .shown_cells = sensitivity_cells,
-                                              .page = add_page,
-                                              .error_shares = error_shares,
-                                              .rms_at_poses = rms_at_poses,
-                                              .comparable = comparable_sensitivity,
-                                              .compare = compare_sensitivity};
+constinit const ReportKind kReport{.tally = sensitivity_tally,
+                                   .tables = sensitivity_tables,
+                                   .two_rankings = two_rankings,
+                                   .merits = sensitivity_merits,
+                                   .sorts = true,
+                                   .settling = settling,
+                                   .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
+                                   .method = method,
+                                   .warn = warn,
+                                   .answer = sensitivity_answer,
+                                   .shown_cells = sensitivity_cells,
+                                   .page = add_page,
+                                   .error_shares = error_shares,
+                                   .rms_at_poses = rms_at_poses,
+                                   .comparable = comparable_sensitivity,
+                                   .compare = compare_sensitivity};
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

@@ -12,7 +12,7 @@
 #include "engine/stats/indices.h"
 #include "engine/stats/rank_correlation.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 /// The points, each moved to `multiple` times its distance from the middle of all points.
@@ -49,7 +49,7 @@ std::unique_ptr<Model> model_with(MechanismChoice mechanism, std::vector<Platfor
 
 /// [responses x errors] The effects (index x sigma, SI), by the published estimator. A pose at which the solve for an
 /// error does not converge is left out for this error.
-SensitivityResult::Indices effects_of(const Plan& plan, const Model& model) {
+Result::Indices effects_of(const Plan& plan, const Model& model) {
   const std::vector<double> no_background(model.description().factors.size(), 0.0);
   std::vector<double> responses(model.description().responses.size());
   Array<std::vector<LocalIndex>, axis::Response, axis::Factor> local(
@@ -69,7 +69,7 @@ SensitivityResult::Indices effects_of(const Plan& plan, const Model& model) {
       }
     }
   }
-  SensitivityResult::Indices effects(local.lengths());
+  Result::Indices effects(local.lengths());
   for (std::size_t r = 0; r < responses.size(); ++r) {
     for (std::size_t slot = 0; slot < plan.slots(); ++slot) {
       const double sigma = plan.distributions()[slot].standard_deviation();
@@ -87,16 +87,16 @@ Array<double, axis::RadiusMultiple, axis::Response> radius_rank_correlations(con
   const std::optional<MechanismChoice> mechanism = to_first_order(study.mechanism);
   if (!mechanism || !mechanism->entry->build_with_points) return {};
   const std::unique_ptr<Model> own = build_model(*mechanism);
-  const SensitivityResult::Indices effects = effects_of(plan, *own);
+  const Result::Indices effects = effects_of(plan, *own);
   const std::size_t responses = own->description().responses.size();
   Array<double, axis::RadiusMultiple, axis::Response> correlations({kPointsRadii.size(), responses}, kNaN);
   for (std::size_t k = 0; k < kPointsRadii.size(); ++k) {
     const std::unique_ptr<Model> other = model_with(*mechanism, at_radius(own->metric_points(), kPointsRadii[k]));
     if (!other) continue;
-    const SensitivityResult::Indices others = effects_of(plan, *other);
+    const Result::Indices others = effects_of(plan, *other);
     for (std::size_t r = 0; r < responses; ++r) correlations(k, r) = kendall_tau(effects.row(r), others.row(r));
   }
   return correlations;
 }
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

@@ -6,7 +6,7 @@
 #include "engine/study/plan.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 
 /// The ranking of errors is repeated with the points of the platform's metric moved to these multiples of their
 /// distance from the middle of all points.
@@ -20,4 +20,4 @@ inline constexpr std::array kPointsRadii{0.5, 2.0};
 /// sensitivity study.
 Array<double, axis::RadiusMultiple, axis::Response> radius_rank_correlations(const Study& study, const Plan& plan);
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

@@ -17,12 +17,12 @@
 #include "engine/stats/indices.h"
 #include "engine/stats/rank_correlation.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 /// The positions of the errors in the order that the user chose.
 std::vector<std::size_t> ordered(const StoredResult& result, std::size_t response, RowOrder order) {
-  const SensitivityResult& found = sensitivity_of(result);
+  const Result& found = sensitivity_of(result);
   const auto key = [&](std::size_t p) {
     double value = 0.0;
     if (order == RowOrder::effect) value = effect(result, response, p);
@@ -224,7 +224,7 @@ std::string few_samples_note(const StoredResult& result, std::size_t response) {
   constexpr std::uint64_t kEnoughOfSquares = 1000;
   constexpr double kSquare = -0.5;  // an error with an index change below this acts by its square; an index that is
                                     // proportional to size changes by -90 %
-  const SensitivityResult& found = sensitivity_of(result);
+  const Result& found = sensitivity_of(result);
   if (found.solves.empty()) return {};
   const std::uint64_t samples = std::ranges::min(found.solves, {}, &SolveCounts::total).total();
   const bool has_square =
@@ -270,7 +270,7 @@ Table ranked_table(const StoredResult& result, const RankedErrors& ranked) {
 }  // namespace
 
 GlobalIndices shown_indices(const StoredResult& result) {
-  const SensitivityResult& found = sensitivity_of(result);
+  const Result& found = sensitivity_of(result);
   return {found.global_corrected, found.global_corrected_ci_low, found.global_corrected_ci_high};
 }
 
@@ -295,7 +295,7 @@ double effect(const StoredResult& result, std::size_t response, std::size_t fact
   return shown_indices(result).value(response, factor) * result.factor_sigma[factor];
 }
 
-FilledColumn index_column(const StoredResult& result, const SensitivityResult::Indices& values, std::size_t response,
+FilledColumn index_column(const StoredResult& result, const Result::Indices& values, std::size_t response,
                           std::string name, std::string heading, int dispensable) {
   const Unit& unit = display(result.responses[response]);
   return {number_column(std::move(name), std::move(heading), fmt::format("{}/unit", unit.name), dispensable),
@@ -305,7 +305,7 @@ FilledColumn index_column(const StoredResult& result, const SensitivityResult::I
           }};
 }
 
-double share_not_converged(const SensitivityResult& result, std::size_t factor) {
+double share_not_converged(const Result& result, std::size_t factor) {
   const SolveCounts solves = total_of(result.solves.row(factor));
   return solves.total() == 0 ? 0.0 : static_cast<double>(solves.not_converged()) / static_cast<double>(solves.total());
 }
@@ -348,7 +348,7 @@ FilledColumn rank_column(const StoredResult& result, const RankedErrors& ranked,
 }
 
 std::vector<std::size_t> responses_without_effect(const StoredResult& result) {
-  const SensitivityResult& found = sensitivity_of(result);
+  const Result& found = sensitivity_of(result);
   std::vector<std::size_t> list;
   for (std::size_t r = 0; r < found.responses(); ++r) {
     bool is_known = false;
@@ -370,4 +370,4 @@ std::vector<Table> sensitivity_tables(const StoredResult& result, const TableOpt
   return tables;
 }
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

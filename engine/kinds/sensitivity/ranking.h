@@ -9,8 +9,9 @@
 #include "engine/report/display.h"
 #include "engine/report/tables.h"
 #include "engine/result/result_file.h"
+#include "engine/stats/indices.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 
 /// The errors of a sensitivity result, ordered for one response. Errors with equal values keep the order of the study,
 /// and errors with an unknown value come last.
@@ -25,9 +26,9 @@ RankedErrors ranked_errors(const StoredResult& result, std::string_view response
 
 /// Global indices by one estimator, with their intervals. Keeps a reference to the result.
 struct GlobalIndices {
-  const SensitivityResult::Indices& value;  ///< indices, SI
-  const SensitivityResult::Indices& low;    ///< lower ends of the intervals
-  const SensitivityResult::Indices& high;   ///< upper ends of the intervals
+  const Result::Indices& value;  ///< indices, SI
+  const Result::Indices& low;    ///< lower ends of the intervals
+  const Result::Indices& high;   ///< upper ends of the intervals
 };
 
 /// The indices that are shown and by which errors are ranked: the corrected ones.
@@ -35,6 +36,9 @@ GlobalIndices shown_indices(const StoredResult& result);
 
 /// The distance of the farther end of an index's interval from the index, divided by the index.
 double relative_reach(const GlobalIndices& indices, std::size_t response, std::size_t factor);
+
+using poesy::has_effect;  // the functions below are named like those for single numbers
+using poesy::index_rounding;
 
 /// The magnitude below which a global or local index of this response and error is rounding.
 double index_rounding(const StoredResult& result, std::size_t response, std::size_t factor);
@@ -55,7 +59,7 @@ double effect(const StoredResult& result, std::size_t response, std::size_t fact
 
 /// A column with global indices, or with ends of their intervals, in display units: response per unit of the error.
 /// values: the numbers of the column, SI. Keeps references to the result and the values.
-FilledColumn index_column(const StoredResult& result, const SensitivityResult::Indices& values, std::size_t response,
+FilledColumn index_column(const StoredResult& result, const Result::Indices& values, std::size_t response,
                           std::string name, std::string heading, int dispensable = 0);
 
 /// A column with the rank of each error; empty if the response does not vary. Keeps references to both arguments.
@@ -70,11 +74,11 @@ FilledColumn rank_column(const StoredResult& result, const RankedErrors& ranked,
 std::vector<Table> sensitivity_tables(const StoredResult& result, const TableOptions& options);
 
 /// The share of the samples of an error, at all poses, that were not solved.
-double share_not_converged(const SensitivityResult& result, std::size_t factor);
+double share_not_converged(const Result& result, std::size_t factor);
 
 /// Compares the rankings of two results for the errors that both have. Errors without an effect share the last rank.
 /// Errors whose effect cannot be distinguished from rounding have no rank and are left out of Kendall's tau. Throws
 /// InputError if the results are of two kinds, or have no error in common. Precondition: both are sensitivity results.
 TwoRankings two_rankings(const RankedResult& a, const RankedResult& b, RowOrder order = RowOrder::effect);
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

@@ -13,7 +13,14 @@
 #include "engine/stats/tolerance.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::axis {
+
+/// Multiples of the distance of each point of the platform's metric from the middle of all points.
+using RadiusMultiple = Axis<"radius_multiple">;
+
+}  // namespace poesy::axis
+
+namespace poesy::sensitivity {
 
 /// The error relative to which tolerances of equal effect are set, and the tolerance that it gets.
 struct ToleranceReference {
@@ -22,7 +29,7 @@ struct ToleranceReference {
 };
 
 /// The options of a sensitivity study.
-struct SensitivityOptions {
+struct Options {
   std::optional<ToleranceReference> reference;  ///< reference error; none: the error with the smallest effect
   /// An error counts as linear if its nonlinearity and relative discrepancy (FidelityResult) are at most this number;
   /// used only if a study compares two fidelities.
@@ -30,12 +37,7 @@ struct SensitivityOptions {
 };
 
 /// The kind of study that computes the effect of each error alone, `sensitivity`.
-extern const StudyKind kSensitivityStudy;
-
-namespace axis {
-/// Multiples of the distance of each point of the platform's metric from the middle of all points.
-using RadiusMultiple = Axis<"radius_multiple">;
-}  // namespace axis
+extern const StudyKind kStudy;
 
 /// How much of each error's effect the actuators can remove, to first order. Effects are those of Separation
 /// (model/model.h), in m per SI unit of the error. NaN if an error has no effect.
@@ -66,7 +68,7 @@ struct FidelityResult {
 
   std::vector<std::string> fidelities;       ///< names of the two fidelities, the first one first
   double linearity = 0.01;                   ///< largest nonlinearity and |relative_discrepancy| of a linear error
-  Indices global;                            ///< SensitivityResult::global at the second fidelity
+  Indices global;                            ///< Result::global at the second fidelity
   Indices discrepancy;                       ///< global at the second fidelity minus global at the first
   Indices relative_discrepancy;              ///< discrepancy divided by the error's effect
   Indices nonlinearity;                      ///< root mean square change of mean and spread between the fidelities,
@@ -79,7 +81,7 @@ struct FidelityResult {
 /// The result of a sensitivity study; SI; NaN where undefined. `global` is the published estimator of the global index.
 /// `global_corrected` is the index that tables and figures show: it has no bias from sampling noise. It is NaN if the
 /// error is too small for its effect to be distinguished from rounding (stats/indices.h).
-struct SensitivityResult {
+struct Result {
   /// A number for each response, error and pose.
   template <class T>
   using Cells = Array<T, axis::Response, axis::Factor, axis::Pose>;
@@ -135,8 +137,6 @@ struct SensitivityResult {
 };
 
 /// The sensitivity result in a stored result. Precondition: the result is of kind `sensitivity`.
-inline const SensitivityResult& sensitivity_of(const StoredResult& result) {
-  return found_of<SensitivityResult>(result);
-}
+inline const Result& sensitivity_of(const StoredResult& result) { return found_of<Result>(result); }
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

@@ -19,7 +19,7 @@
 #include "engine/run/rounds.h"
 #include "engine/run/series_model.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 /// [responses x errors] The magnitude below which the index of each error is rounding.
@@ -54,8 +54,8 @@ struct SensitivityJob {
     }
     found.state(archive, unit.first.value);
   }
-  SensitivityCollector sums(const Plan& of, const Shard& shard) const { return {of, responses(), conf_level, shard}; }
-  std::vector<Estimate> estimates(const SensitivityCollector& sums, std::size_t slot) const {
+  Collector sums(const Plan& of, const Shard& shard) const { return {of, responses(), conf_level, shard}; }
+  std::vector<Estimate> estimates(const Collector& sums, std::size_t slot) const {
     return global_indices(sums.cells_of(slot), plan.distributions()[slot].standard_deviation(), conf_level);
   }
 };
@@ -79,7 +79,7 @@ std::vector<Dimension> response_dimensions(const ModelDescription& model) {
 }
 
 /// Runs the study at both fidelities, with the same draws, and compares the results.
-std::optional<SensitivityResult> run_both_fidelities(const StudyRun& run, const Plan& plan) {
+std::optional<Result> run_both_fidelities(const StudyRun& run, const Plan& plan) {
   const Analysis& analysis = run.study.analysis;
   const auto report = [&](const Progress& progress) {
     if (run.options.progress) run.options.progress(progress);
@@ -104,9 +104,8 @@ std::optional<SensitivityResult> run_both_fidelities(const StudyRun& run, const 
   const auto other = by_series(run.study, build_model(at_compared_fidelity(choice)), *choice.compared);
   const auto second = run_sensitivity(plan, *other, analysis.conf_level, options);
   if (!first || !second) return std::nullopt;
-  first->fidelity =
-      compare_fidelities(*first, *second, response_dimensions(run.study.model()), standard_deviations(run.study),
-                         asked_of<SensitivityOptions>(analysis).linearity);
+  first->fidelity = compare_fidelities(*first, *second, response_dimensions(run.study.model()),
+                                       standard_deviations(run.study), asked_of<Options>(analysis).linearity);
   for (const std::size_t fidelity : {choice.fidelity, choice.compared.value()}) {
     first->fidelity->fidelities.push_back(run.study.model().fidelities[fidelity]);
   }
@@ -195,22 +194,22 @@ Outlook sensitivity_outlook(const Study& study, const Model& model, const PoseSe
 
 }  // namespace
 
-std::optional<SensitivityResult> run_sensitivity(const Plan& plan, const Model& model, double conf_level,
-                                                 const RunOptions& options) {
+std::optional<Result> run_sensitivity(const Plan& plan, const Model& model, double conf_level,
+                                      const RunOptions& options) {
   const SensitivityJob job{plan, model, conf_level};
   PoseFold work(plan, job, options);
   if (!fold(work, options) || options.shard) return std::nullopt;
-  SensitivityResult result = sensitivity_result(plan, std::move(work.sums()).cells(), background_responses(plan, model),
-                                                response_rounding(model), conf_level);
+  Result result = sensitivity_result(plan, std::move(work.sums()).cells(), background_responses(plan, model),
+                                     response_rounding(model), conf_level);
   result.convergence = work.convergence();
   if (!plan.adaptive()) result.history = work.sums().history(result);
   return result;
 }
 
-constinit const Kind kSensitivityKind{.study = kSensitivityStudy,
-                                      .run = {run_study_of_kind, sensitivity_outlook, cells},
-                                      .file = kSensitivityFile,
-                                      .report = kSensitivityReport,
-                                      .set_tolerances = set_sensitivity_tolerances};
+constinit const Kind kKind{.study = kStudy,
+                           .run = {run_study_of_kind, sensitivity_outlook, cells},
+                           .file = kFile,
+                           .report = kReport,
+                           .set_tolerances = set_sensitivity_tolerances};
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

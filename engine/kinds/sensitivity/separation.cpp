@@ -13,7 +13,7 @@
 #include "engine/stats/indices.h"
 #include "engine/stats/moments.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 /// 1 - residual / effect, but at least zero; NaN if the ratio is not finite.
@@ -195,4 +195,4 @@ void add_separation_section(const StoredResult& result, std::span<const Table> t
   section.table(tables, "separation");
 }
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

@@ -10,7 +10,7 @@
 #include "engine/run/result.h"
 #include "engine/study/poses/pose_selection.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 
 /// Separates the effects of errors at all poses (SeparationResult). sigma: [errors] standard deviations of these
 /// errors, SI. The shares of an error are NaN if its effect is rounding. The shares over all poses are NaN if its
@@ -34,4 +34,4 @@ Table separation_table(const StoredResult& result, const RankedErrors& ranked);
 /// Adds to the page the section on separation, if the result has one.
 void add_separation_section(const StoredResult& result, std::span<const Table> tables, Page& page);
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

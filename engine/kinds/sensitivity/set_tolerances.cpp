@@ -22,7 +22,7 @@
 #include "engine/storage/file_writer.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 constexpr const char* kStem = "confirm";
@@ -356,4 +356,4 @@ std::string set_sensitivity_tolerances(const StoredResult& result, const Toleran
                          width);
 }
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

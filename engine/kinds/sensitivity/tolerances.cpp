@@ -12,10 +12,10 @@
 #include "engine/kinds/sensitivity/linearity.h"
 #include "engine/kinds/sensitivity/ranking.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
-using Indices = SensitivityResult::Indices;
+using Indices = Result::Indices;
 
 /// The group /tolerances. It repeats data of other groups, for programs that read only this group.
 struct ToleranceGroup {
@@ -46,22 +46,22 @@ const Group<ToleranceGroup> kToleranceGroup{
      {"background_rms", &ToleranceGroup::background_rms, kResponseUnit,
       "Root mean square over the poses of the response with all varied errors zero"}}};
 
-const std::vector<Attribute<SensitivityResult>> kIndexLevel{{"conf_level", &SensitivityResult::conf_level}};
+const std::vector<Attribute<Result>> kIndexLevel{{"conf_level", &Result::conf_level}};
 
 /// The fields of the group /tolerances that repeat indices of the group /sensitivity.
-const Fields<SensitivityResult> kIndexFields{
-    {"index", &SensitivityResult::global, kIndexUnit,
+const Fields<Result> kIndexFields{
+    {"index", &Result::global, kIndexUnit,
      "Global sensitivity index as published, /sensitivity/global: tolerances are counted from it"},
-    {"index_ci_low", &SensitivityResult::global_ci_low, kIndexUnit, "Lower end of the interval of index",
-     Presence::always, kIndexLevel},
-    {"index_ci_high", &SensitivityResult::global_ci_high, kIndexUnit, "Upper end of the interval of index",
-     Presence::always, kIndexLevel}};
+    {"index_ci_low", &Result::global_ci_low, kIndexUnit, "Lower end of the interval of index", Presence::always,
+     kIndexLevel},
+    {"index_ci_high", &Result::global_ci_high, kIndexUnit, "Upper end of the interval of index", Presence::always,
+     kIndexLevel}};
 
 /// The fields of numbers that follow from the study. Only these fields and the reference errors are read from the group
 /// /tolerances.
-const Fields<SensitivityResult> kStudyFields{
-    {"limb", &SensitivityResult::limb, "1", "Limb of the error, from 1"},
-    {"mean_square_bound", &SensitivityResult::mean_square_bound, "1",
+const Fields<Result> kStudyFields{
+    {"limb", &Result::limb, "1", "Limb of the error, from 1"},
+    {"mean_square_bound", &Result::mean_square_bound, "1",
      "To first order, the mean square of all errors together is at most this times the sum of those of each error "
      "alone; 1: they add exactly"}};
 
@@ -77,9 +77,9 @@ const Fields<ReferenceColumns> kReferenceFields{
     {"reference_tolerance", &ReferenceColumns::tolerance, "SI: unit of reference_factor",
      "Tolerance of reference_factor"}};
 
-std::optional<ReferenceError> reference_for(const Study& study, const SensitivityResult& found, std::size_t response) {
+std::optional<ReferenceError> reference_for(const Study& study, const Result& found, std::size_t response) {
   const std::vector<FactorIndex>& factors = study.analysis.factors;
-  if (const auto& chosen = asked_of<SensitivityOptions>(study.analysis).reference) {
+  if (const auto& chosen = asked_of<Options>(study.analysis).reference) {
     const auto at = std::ranges::find(factors, chosen->factor);
     return ReferenceError{static_cast<std::size_t>(at - factors.begin()), chosen->tolerance};
   }
@@ -94,7 +94,7 @@ std::optional<ReferenceError> reference_for(const Study& study, const Sensitivit
 template <class Heading>
 void append_tolerance_columns(CsvTable& table, const StoredResult& result, const ResponseTolerances& tolerances,
                               const Heading& heading) {
-  const SensitivityResult& found = sensitivity_of(result);
+  const Result& found = sensitivity_of(result);
   const std::size_t r = tolerances.response;
   const std::string index_unit = csv_unit(kIndexUnit, result, &result.responses[r]);
   table.columns.push_back(list_column(heading("index", index_unit, ""), found.global.row(r)));
@@ -238,7 +238,7 @@ std::vector<std::string> notes(const StoredResult& result, const ResponseToleran
 /// The columns of the table of tolerances. Keeps references to both arguments.
 std::vector<FilledColumn> columns(const StoredResult& result, const ResponseTolerances& tolerances) {
   const std::size_t r = tolerances.response;
-  const SensitivityResult& found = sensitivity_of(result);
+  const Result& found = sensitivity_of(result);
   const auto tolerance = [&result](std::string name, std::string heading, const std::vector<double>& values) {
     return FilledColumn{number_column(std::move(name), std::move(heading)), [&result, &values](std::size_t p) {
                           return tolerance_cell(values[p], display(result.factors[p]));
@@ -278,7 +278,7 @@ Bars tolerance_bars(const StoredResult& result, const Tolerances& found, ArrayPo
 
 }  // namespace
 
-void set_references(const Study& study, SensitivityResult& found) {
+void set_references(const Study& study, Result& found) {
   const ModelDescription& model = study.model();
   found.limb = Array<std::uint64_t, axis::Factor>({found.factors()});
   for (std::size_t p = 0; p < found.factors(); ++p) {
@@ -292,7 +292,7 @@ void set_references(const Study& study, SensitivityResult& found) {
   }
 }
 
-void write_tolerance_group(ResultBuilder& result, const Study& study, const SensitivityResult& found) {
+void write_tolerance_group(ResultBuilder& result, const Study& study, const Result& found) {
   const std::vector<double> sigma = standard_deviations(study);
   const std::vector<double> mean = stated_means(study);
   ToleranceGroup group;
@@ -325,7 +325,7 @@ void write_tolerance_group(ResultBuilder& result, const Study& study, const Sens
   write_fields(result, "/tolerances", kReferenceFields, references);
 }
 
-void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& factors, SensitivityResult& found) {
+void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& factors, Result& found) {
   read_fields(file, "/tolerances", kStudyFields, found);
   ReferenceColumns references;
   read_fields(file, "/tolerances", kReferenceFields, references);
@@ -340,7 +340,7 @@ void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& fa
 }
 
 ResponseTolerances stored_tolerances(const StoredResult& result, std::size_t response) {
-  const SensitivityResult& found = sensitivity_of(result);
+  const Result& found = sensitivity_of(result);
   return {response,
           response_tolerances(found, result.factor_sigma, result.factor_mean, response, found.reference(response)),
           std::nullopt};
@@ -413,4 +413,4 @@ void add_tolerance_section(const StoredResult& result, Page& page) {
   section.table(tolerance_table(result, found));
 }
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

@@ -15,7 +15,7 @@
 #include "engine/stats/tolerance.h"
 #include "engine/storage/output_folder.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 
 /// Tolerances of the errors for one response of a sensitivity result. If there is a limit on the response, also the
 /// tolerances with which it is kept.
@@ -31,13 +31,13 @@ struct ResponseTolerances {
 /// Sets the members of a result that tolerances need: `limb`, `reference` and `mean_square_bound`. The reference of
 /// each response is the error that the study states, or else the error with the smallest effect, with one display unit
 /// as tolerance.
-void set_references(const Study& study, SensitivityResult& found);
+void set_references(const Study& study, Result& found);
 
 /// Writes the group /tolerances, which contains all data that a program needs to set tolerances.
 /// @{
-void write_tolerance_group(ResultBuilder& result, const Study& study, const SensitivityResult& found);
+void write_tolerance_group(ResultBuilder& result, const Study& study, const Result& found);
 /// Reads the group /tolerances. Throws h5::Error if a reference is not one of these factors.
-void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& factors, SensitivityResult& found);
+void read_tolerance_group(const h5::File& file, const std::vector<NamedUnit>& factors, Result& found);
 /// @}
 /// Adds to `tables` a table tolerances_RESPONSE.csv for each response.
 void append_tolerance_tables(CsvTables& tables, const StoredResult& result);
@@ -60,7 +60,7 @@ ResponseTolerances stored_tolerances(const StoredResult& result, std::size_t res
 ///
 ///     factor, kind (linear or angular), limb, unit (SI), display_unit, index_unit, studied_as (distribution of the
 ///     error in the study), index, index_ci_low, index_ci_high, mean_square_share, index_change (see
-///     SensitivityResult::index_change); then the tolerances in `unit`: limit_equal_effect and limit_equal_tolerance
+///     Result::index_change); then the tolerances in `unit`: limit_equal_effect and limit_equal_tolerance
 ///     (only with a limit), and equal_effect (which does not depend on a limit); then these tolerances in
 ///     `display_unit`: equal_effect_display ...
 ///
@@ -100,4 +100,4 @@ Table tolerance_table(const StoredResult& result, const ResponseTolerances& tole
 std::string set_sensitivity_tolerances(const StoredResult& result, const TolerancesOptions& options,
                                        const Catalog& catalog, std::size_t width);
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

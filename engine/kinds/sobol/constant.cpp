@@ -7,7 +7,7 @@
 #include "engine/run/response_rounding.h"
 #include "engine/stats/indices.h"
 
-namespace poesy {
+namespace poesy::sobol {
 namespace {
 
 /// The dimension of each component of the model's additional outputs (Detail in model/model.h).
@@ -68,7 +68,7 @@ std::vector<std::uint8_t> varying_quantities(const IndexPanel& panel, const Pane
 }
 
 void leave_out_constant(const IndexPanel& panel, const PanelSums& sums, std::span<const double> rounding,
-                        SobolResult& found) {
+                        Result& found) {
   const std::vector<std::uint8_t> varies = varying_quantities(panel, sums, rounding);
   for (std::size_t r = 0; r < panel.responses; ++r) {
     const std::vector<double> at_poses = deviations(sums, r);
@@ -88,4 +88,4 @@ void leave_out_constant(const IndexPanel& panel, const PanelSums& sums, std::spa
   keep_flags(std::span(varies).subspan(panel.responses), found.vector_varies);
 }
 
-}  // namespace poesy
+}  // namespace poesy::sobol

@@ -8,7 +8,7 @@
 #include "engine/study/plan.h"
 
 /// Finds the quantities of a panel (IndexPanel) that do not vary (stats/indices.h) and so have no variance to divide.
-namespace poesy {
+namespace poesy::sobol {
 
 /// [rows] For each row of the panel, the largest standard deviation (SI) that rounding alone may cause. A row
 /// (axis::PanelRow) is a response, or a component of an additional output of the model (Detail in model/model.h). A
@@ -25,6 +25,6 @@ std::vector<std::uint8_t> varying_quantities(const IndexPanel& panel, const Pane
 /// the shares over all poses of a response or vector that varies at no pose. Records which responses and vectors vary,
 /// unless all do. rounding: see row_rounding().
 void leave_out_constant(const IndexPanel& panel, const PanelSums& sums, std::span<const double> rounding,
-                        SobolResult& found);
+                        Result& found);
 
-}  // namespace poesy
+}  // namespace poesy::sobol

@@ -5,7 +5,7 @@
 #include "engine/base/contract.h"
 #include "engine/random/stream.h"
 
-namespace poesy {
+namespace poesy::sobol {
 
 namespace {
 
@@ -17,7 +17,7 @@ PanelPoints points_of(const Plan& plan, Design design, std::size_t samples) {
 
 }  // namespace
 
-PanelDesign::PanelDesign(const Plan& plan, const SobolOptions& asked)
+PanelDesign::PanelDesign(const Plan& plan, const Options& asked)
     : plan_(&plan),
       replicates_(asked.design == Design::random ? 1 : asked.replicates),
       samples_(plan.samples() / replicates_),
@@ -51,4 +51,4 @@ void PanelDesign::fill(PanelSample which, std::size_t slot, const PanelUnit& uni
   }
 }
 
-}  // namespace poesy
+}  // namespace poesy::sobol

@@ -10,7 +10,7 @@
 #include "engine/random/scrambled_sobol.h"
 #include "engine/study/plan.h"
 
-namespace poesy {
+namespace poesy::sobol {
 
 /// A unit of work: consecutive samples of a panel (IndexPanel), which are solved at all poses. A sample of a panel
 /// consists of a set of errors A, another set B, and mixtures of the two.
@@ -35,7 +35,7 @@ class PanelDesign {
   static constexpr std::size_t kUnitSamples = 125;
 
   /// Keeps a reference to the plan.
-  PanelDesign(const Plan& plan, const SobolOptions& asked);
+  PanelDesign(const Plan& plan, const Options& asked);
 
   /// Whether all samples are independent. If not, only samples of different replicates are.
   bool independent() const { return std::holds_alternative<std::monostate>(points_); }
@@ -60,4 +60,4 @@ class PanelDesign {
   PanelPoints points_;
 };
 
-}  // namespace poesy
+}  // namespace poesy::sobol

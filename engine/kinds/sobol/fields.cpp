@@ -8,7 +8,7 @@
 #include "engine/report/display.h"
 #include "engine/result/result_parts.h"
 
-namespace poesy {
+namespace poesy::sobol {
 namespace {
 
 /// The name of the axis of indices in a file: that of errors, or that of the groups into which the study joins errors.
@@ -79,20 +79,20 @@ struct Layout {
         of_vectors(joined, "/sobol/vector",
                    "Generalised indices of vectors with signs over the poses together: as aggregated, of the sums over "
                    "a vector's components (Gamboa, Janon, Klein and Lagnoux 2014)"),
-        beside(along<SobolResult>(
-            joined, {{"n", &SobolResult::n, "1", "Pairs of samples behind S1 and ST, both solved"},
-                     {"mean", &SobolResult::mean, kResponseUnit, "Mean of the response over the samples"},
-                     {"variance", &SobolResult::variance, "SI: square of the response unit",
+        beside(along<Result>(
+            joined, {{"n", &Result::n, "1", "Pairs of samples behind S1 and ST, both solved"},
+                     {"mean", &Result::mean, kResponseUnit, "Mean of the response over the samples"},
+                     {"variance", &Result::variance, "SI: square of the response unit",
                       "Variance of the response that S1 and ST share"},
-                     {"without_sign", &SobolResult::without_sign, "1",
+                     {"without_sign", &Result::without_sign, "1",
                       "1 where no sample was below zero: such a response, the length of a vector for instance, is not "
                       "additive even where the vector is linear"},
-                     {"varies", &SobolResult::varies, "1", kVaries, Presence::where_computed}})),
-        beside_vectors{{"varies", &SobolResult::vector_varies, "1", kVaries, Presence::where_computed}},
-        pairs(share_rows<decltype(SobolResult::S2)>(
+                     {"varies", &Result::varies, "1", kVaries, Presence::where_computed}})),
+        beside_vectors{{"varies", &Result::vector_varies, "1", kVaries, Presence::where_computed}},
+        pairs(share_rows<decltype(Result::S2)>(
             joined, "S2",
             "Second-order index: the closed index of two together without those of each; NaN on the diagonal")),
-        effects(share_rows<decltype(SobolResult::Sh)>(
+        effects(share_rows<decltype(Result::Sh)>(
             joined, "Sh",
             "Shapley effect: the share of the variance, what is made together divided evenly; all add up to 1, also "
             "where errors are correlated")) {}
@@ -100,8 +100,8 @@ struct Layout {
   IndexRows<axis::Response, axis::ErrorGroup, axis::Pose> at_poses;
   IndexRows<axis::Response, axis::ErrorGroup> aggregated;
   IndexRows<axis::SignedVector, axis::ErrorGroup> of_vectors;
-  Fields<SobolResult> beside;
-  Fields<SobolResult> beside_vectors;
+  Fields<Result> beside;
+  Fields<Result> beside_vectors;
   Fields<Shares<axis::Response, axis::ErrorGroup, axis::OtherGroup>> pairs;
   Fields<Shares<axis::Response, axis::ErrorGroup>> effects;
 };
@@ -119,7 +119,7 @@ const Layout& layout(bool joined) {
   return joined ? kOfGroups : kOfErrors;
 }
 
-void add_axes(ResultBuilder& result, const SobolResult& found) {
+void add_axes(ResultBuilder& result, const Result& found) {
   if (found.joined) {
     result.add_axis("group", found.group_names, {"1", "Errors that are taken together"});
   }
@@ -130,7 +130,7 @@ void add_axes(ResultBuilder& result, const SobolResult& found) {
 }
 
 void write(ResultBuilder& result, const Study& study, std::any& any) {
-  const auto& found = std::any_cast<const SobolResult&>(any);
+  const auto& found = std::any_cast<const Result&>(any);
   const Layout& rows = layout(found.joined);
   add_names(result, study, study.analysis.factors);
   add_sigma(result, study);
@@ -157,7 +157,7 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
 }
 
 void read(const h5::File& file, StoredResult& result) {
-  SobolResult found;
+  Result found;
   read_sigma(file, result);
   found.joined = file.exists("/group");
   if (file.exists("/vector")) found.vectors = file.read<std::string>("/vector");
@@ -190,7 +190,7 @@ void read(const h5::File& file, StoredResult& result) {
 }
 
 /// A table with a line for each error or group.
-CsvTable lines_of_groups(const SobolResult& found, std::string name) {
+CsvTable lines_of_groups(const Result& found, std::string name) {
   return {
       std::move(name), {axis_of(found.joined), [&](std::size_t g) { return found.group_names[g]; }}, found.groups()};
 }
@@ -212,7 +212,7 @@ void append_interval_columns(CsvTable& table, const std::string& name, const Sha
 
 /// A table with a line for each error or group, and columns for the indices of one quantity (a response or a vector).
 template <class Indices>
-CsvTable indices_table(const SobolResult& result, std::string name, const Indices& found, std::size_t quantity) {
+CsvTable indices_table(const Result& result, std::string name, const Indices& found, std::size_t quantity) {
   CsvTable table = lines_of_groups(result, std::move(name));
   append_salib_columns(table, "S1", found.S1, quantity);
   append_salib_columns(table, "ST", found.ST, quantity);
@@ -237,7 +237,7 @@ void append_pose_tables(CsvTables& tables, const StoredResult& result, const Fie
 
 /// A table with a line for each pair of groups.
 CsvTable pairs_table(const StoredResult& result, std::size_t r) {
-  const SobolResult& found = sobol_of(result);
+  const Result& found = sobol_of(result);
   const auto pairs = std::make_shared<const std::vector<GroupPair>>(group_pairs(found.groups()));
   CsvTable table{"sobol_pairs_" + result.responses[r].name,
                  {"pair",
@@ -259,7 +259,7 @@ CsvTable pairs_table(const StoredResult& result, std::size_t r) {
 }
 
 void append_tables(CsvTables& tables, const StoredResult& result) {
-  const SobolResult& found = sobol_of(result);
+  const Result& found = sobol_of(result);
   const Layout& rows = layout(found.joined);
   append_sigma_tables(tables, result);
   for (std::size_t r = 0; r < result.responses.size(); ++r) {
@@ -294,6 +294,6 @@ std::size_t sobol_bytes(const AxisLengths& lengths) {
          bytes_of(rows.pairs, lengths) + bytes_of(rows.effects, lengths);
 }
 
-constinit const FileKind kSobolFile{.write = write, .read = read, .append_tables = append_tables};
+constinit const FileKind kFile{.write = write, .read = read, .append_tables = append_tables};
 
-}  // namespace poesy
+}  // namespace poesy::sobol

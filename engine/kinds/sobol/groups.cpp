@@ -10,7 +10,7 @@
 #include "engine/base/contract.h"
 #include "engine/base/name_pattern.h"
 
-namespace poesy {
+namespace poesy::sobol {
 namespace {
 
 const Factor& factor_at(const Analysis& analysis, const ModelDescription& model, std::size_t position) {
@@ -41,7 +41,7 @@ std::string named_group(const std::vector<NamedGroup>& groups, std::string_view 
 /// Joins errors into the groups that the study names, in the order of the study. Errors that no named group contains
 /// come last.
 std::vector<ErrorGroup> joined_by_name(const Analysis& analysis, const ModelDescription& model) {
-  const std::vector<NamedGroup>& named = asked_of<SobolOptions>(analysis).named_groups;
+  const std::vector<NamedGroup>& named = asked_of<Options>(analysis).named_groups;
   std::vector<ErrorGroup> groups =
       joined_by(analysis, [&](std::size_t p) { return named_group(named, factor_at(analysis, model, p).name); });
   const auto place = [&](const ErrorGroup& group) { return std::ranges::find(named, group.name, &NamedGroup::name); };
@@ -103,7 +103,7 @@ void append_parts(const Detail& detail, std::size_t first, std::vector<SignedVec
 
 std::vector<ErrorGroup> error_groups(const Analysis& analysis, const ModelDescription& model) {
   const auto limb = [&](std::size_t p) { return "limb " + std::to_string(factor_at(analysis, model, p).limb); };
-  switch (asked_of<SobolOptions>(analysis).groups_by) {
+  switch (asked_of<Options>(analysis).groups_by) {
     case GroupsBy::limb:
       return joined_by(analysis, limb);
     case GroupsBy::frame:
@@ -160,4 +160,4 @@ std::vector<SignedVector> signed_vectors(const ModelDescription& model) {
   return vectors;
 }
 
-}  // namespace poesy
+}  // namespace poesy::sobol

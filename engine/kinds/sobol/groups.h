@@ -12,7 +12,7 @@
 #include "engine/model/model.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::sobol {
 
 /// Errors that vary together: a mixture of two samples takes either all of them or none of them from the second sample.
 struct ErrorGroup {
@@ -52,4 +52,4 @@ std::vector<std::string> component_units(const Detail& detail);
 /// additional output (Detail in model/model.h) with the same unit are one vector as well.
 std::vector<SignedVector> signed_vectors(const ModelDescription& model);
 
-}  // namespace poesy
+}  // namespace poesy::sobol

@@ -10,11 +10,11 @@
 #include "engine/kinds/sobol/result.h"
 #include "engine/study/study_kind.h"
 
-namespace poesy {
+namespace poesy::sobol {
 namespace {
 
-constexpr std::array<std::string_view, 9> kSobolKeys{"factors", "samples", "conf_level", "groups",    "second_order",
-                                                     "shapley", "design",  "replicates", "background"};
+constexpr std::array<std::string_view, 9> kKeys{"factors", "samples", "conf_level", "groups",    "second_order",
+                                                "shapley", "design",  "replicates", "background"};
 
 constexpr std::array kGroupings{GroupsBy::none, GroupsBy::limb, GroupsBy::frame};
 
@@ -34,7 +34,7 @@ void check_group_name(const StudyValue& value, std::string_view name) {
 }
 
 void read_groups(const StudyValue& value, Study& study, const Reading&) {
-  SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
+  Options& asked = asked_of<Options>(study.analysis);
   if (value.is_text()) {
     std::vector<std::string_view> words;
     for (const GroupsBy by : kGroupings) words.push_back(name(by));
@@ -53,7 +53,7 @@ void read_groups(const StudyValue& value, Study& study, const Reading&) {
 }
 
 std::string groups_lines(const Study& study) {
-  const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
+  const Options& asked = asked_of<Options>(study.analysis);
   if (asked.groups_by != GroupsBy::name) return "groups = " + in_quotes(name(asked.groups_by)) + "\n";
   std::string text;
   for (const NamedGroup& group : asked.named_groups) {
@@ -70,22 +70,22 @@ std::string shown_groups(const TemplateLines& lines, const Study& study) {
   return text + fmt::format("# groups = {{ mine = [{}] }}\n", in_quotes(study.model().factors.front().name));
 }
 
-KeyValue<SobolOptions> design() {
+KeyValue<Options> design() {
   return word_at<Design>(
       {{Design::random, "independent draws, those of a Monte Carlo study with one set of errors at all poses"},
        {Design::lhs, "a Latin hypercube for each replicate"},
        {Design::sobol, "scrambled Sobol' points, a scramble of its own for each replicate"}},
-      &SobolOptions::design);
+      &Options::design);
 }
 
-KeyValue<SobolOptions> yes_or_no(bool SobolOptions::*member) {
+KeyValue<Options> yes_or_no(bool Options::*member) {
   const auto read = [](const StudyValue& value) { return value.yes_or_no(); };
   const auto text = [](bool asked) { return std::string(asked ? "true" : "false"); };
   return value_at("true or false", "", read, text, member);
 }
 
 std::string replicates_line(const Study& study) {
-  const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
+  const Options& asked = asked_of<Options>(study.analysis);
   return asked.design == Design::random ? "" : fmt::format("replicates = {}\n", asked.replicates);
 }
 
@@ -104,15 +104,15 @@ std::vector<StudyRow> sobol_rows() {
                    .late = 1,
                    .shown = shown_groups},
           StudyRow{.name = "second_order",
-                   .value = asked_value(yes_or_no(&SobolOptions::second_order)),
+                   .value = asked_value(yes_or_no(&Options::second_order)),
                    .meaning = "Whether the interaction of each pair is asked for; it takes a solve for each of them."},
           StudyRow{.name = "shapley",
-                   .value = asked_value(yes_or_no(&SobolOptions::shapley)),
+                   .value = asked_value(yes_or_no(&Options::shapley)),
                    .meaning = "Whether Shapley effects are asked for, which divide all of the variance, also among "
                               "errors that are correlated; with G groups, at most 8, it takes 2^G solves of a sample."},
           StudyRow{.name = "design", .value = asked_value(design()), .meaning = "How samples fill the errors' space."},
           StudyRow{.name = "replicates",
-                   .value = asked_value(whole_at(8, 100'000, &SobolOptions::replicates)),
+                   .value = asked_value(whole_at(8, 100'000, &Options::replicates)),
                    .meaning = "Independent parts of a design that is not random, from which intervals follow; they "
                               "share the samples evenly.",
                    .lines = replicates_line,
@@ -136,7 +136,7 @@ const std::string& factor_name(const Study& study, std::size_t position) {
 /// Throws InputError if a pattern matches no error of the study, or an error of an earlier group.
 void check_named_groups(const Study& study, const StudySection& section) {
   std::vector<std::string_view> owner(study.analysis.factors.size());
-  for (const NamedGroup& group : asked_of<SobolOptions>(study.analysis).named_groups) {
+  for (const NamedGroup& group : asked_of<Options>(study.analysis).named_groups) {
     const StudyValue value = section.require(group.name);
     for (const std::string& pattern : group.patterns) {
       bool any = false;
@@ -159,7 +159,7 @@ void check_named_groups(const Study& study, const StudySection& section) {
 
 /// Throws InputError if the samples cannot be divided equally among the replicates.
 void check_replicates(const Study& study, const StudySection& analysis) {
-  const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
+  const Options& asked = asked_of<Options>(study.analysis);
   const auto replicates = analysis.find("replicates");
   if (asked.design == Design::random) {
     if (replicates) replicates->fail("is set, but analysis.design is \"random\"", "write another design, or remove it");
@@ -184,7 +184,7 @@ std::string names_of(const std::vector<FactorIndex>& factors, const Study& study
 /// Throws InputError if there are too many groups for Shapley effects, or if errors of different groups are correlated.
 /// Such a correlation is allowed if the study asks for Shapley effects and for no second-order indices.
 void check_correlation(const Study& study, const StudySection& analysis) {
-  const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
+  const Options& asked = asked_of<Options>(study.analysis);
   const std::vector<ErrorGroup> groups = error_groups(study.analysis, study.model());
   if (asked.shapley && groups.size() > kMostShapleyGroups) {
     analysis.require("shapley").fail(
@@ -260,14 +260,14 @@ std::optional<Refusal> no_template(const ModelDescription& model) {
 
 void check_sobol(Study& study, const Reading& reading) {
   const StudySection analysis = reading.root.section("analysis");
-  if (study.analysis.adaptive && asked_of<SobolOptions>(study.analysis).design != Design::random) {
+  if (study.analysis.adaptive && asked_of<Options>(study.analysis).design != Design::random) {
     analysis.require("samples").fail("is a table, but analysis.design is not \"random\"",
                                      "write a number, e.g. samples = 4096");
   }
   check_draws(study, analysis);
   check_error_sizes(study, reading);
   check_replicates(study, analysis);
-  if (asked_of<SobolOptions>(study.analysis).groups_by == GroupsBy::name) {
+  if (asked_of<Options>(study.analysis).groups_by == GroupsBy::name) {
     check_named_groups(study, analysis.section("groups"));
   }
   if (reading.use == StudyUse::run) {
@@ -283,7 +283,7 @@ void check_sobol(Study& study, const Reading& reading) {
 /// each group; with Shapley effects, one for each subset of groups instead. Second-order indices add one for each pair.
 double solves_of_sample(const Study& study) {
   const auto groups = static_cast<double>(error_groups(study.analysis, study.model()).size());
-  const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
+  const Options& asked = asked_of<Options>(study.analysis);
   return (asked.shapley ? std::exp2(groups) : 2.0 + groups) +
          (asked.second_order ? 0.5 * groups * (groups - 1.0) : 0.0);
 }
@@ -322,16 +322,16 @@ std::string_view name(Design design) {
   return "sobol";
 }
 
-const StudyKind kSobolStudy{.name = "sobol",
-                            .asks = "how the variance of each response divides among the errors and their interactions",
-                            .keys = kSobolKeys,
-                            .varies = Varies::together,
-                            .draws = Draws::per_machine,
-                            .draws_machines_anew = true,
-                            .rows = sobol_rows,
-                            .tables = sobol_tables_of_keys,
-                            .no_template = no_template,
-                            .complete = check_sobol,
-                            .at_pose = sobol_at_pose};
+const StudyKind kStudy{.name = "sobol",
+                       .asks = "how the variance of each response divides among the errors and their interactions",
+                       .keys = kKeys,
+                       .varies = Varies::together,
+                       .draws = Draws::per_machine,
+                       .draws_machines_anew = true,
+                       .rows = sobol_rows,
+                       .tables = sobol_tables_of_keys,
+                       .no_template = no_template,
+                       .complete = check_sobol,
+                       .at_pose = sobol_at_pose};
 
-}  // namespace poesy
+}  // namespace poesy::sobol

@@ -3,15 +3,15 @@
 #include "engine/kinds/kind.h"
 #include "engine/kinds/sobol/result.h"
 
-namespace poesy {
+namespace poesy::sobol {
 
 /// The kind of study `sobol`, which divides the variance of each response among the errors and their interactions.
-extern const Kind kSobolKind;
+extern const Kind kKind;
 
 /// How results of Sobol' indices are stored and reported.
 /// @{
-extern const FileKind kSobolFile;
-extern const ReportKind kSobolReport;
+extern const FileKind kFile;
+extern const ReportKind kReport;
 /// @}
 
-}  // namespace poesy
+}  // namespace poesy::sobol

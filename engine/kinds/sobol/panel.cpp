@@ -12,7 +12,7 @@
 #include "engine/run/response_rounding.h"
 #include "engine/stats/sums.h"
 
-namespace poesy {
+namespace poesy::sobol {
 namespace {
 
 /// The number of components of all additional outputs of the model (Detail in model/model.h).
@@ -69,10 +69,10 @@ IndexPanel::IndexPanel(const Study& study, std::size_t pose_count)
       details(need_details(vectors, responses) ? detail_components(study.model()) : 0),
       poses(pose_count),
       split(split_groups(groups, study)),
-      shapley(asked_of<SobolOptions>(study.analysis).shapley) {
+      shapley(asked_of<Options>(study.analysis).shapley) {
   for (std::size_t r = 0; r < responses; ++r) components_.push_back({r});
   for (const SignedVector& vector : vectors) components_.push_back(vector.components);
-  if (!asked_of<SobolOptions>(study.analysis).second_order) return;
+  if (!asked_of<Options>(study.analysis).second_order) return;
   pairs = group_pairs(groups.size());
 }
 
@@ -453,4 +453,4 @@ std::uint64_t PanelEvaluator::try_pose(const PanelUnit& unit, PoseIndex pose) {
   return sums_.solves[pose.value].total();
 }
 
-}  // namespace poesy
+}  // namespace poesy::sobol

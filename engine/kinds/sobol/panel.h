@@ -18,9 +18,8 @@
 #include "engine/stats/squared_differences.h"
 #include "engine/study/plan.h"
 
-namespace poesy {
+namespace poesy::axis {
 
-namespace axis {
 /// Quantities that get Sobol' indices: first the responses, then vectors of components with a sign (SignedVector).
 using PanelQuantity = Axis<"quantity">;
 using PanelRow = Axis<"row">;  ///< Numbers that a solve gives: first the responses, then the components of the model's
@@ -28,7 +27,10 @@ using PanelRow = Axis<"row">;  ///< Numbers that a solve gives: first the respon
 using GroupPair = Axis<"pair">;          ///< Pairs of groups.
 using GroupSubset = Axis<"subset">;      ///< Subsets of the groups, as numbers whose bit g is set for group g.
 using BlockError = Axis<"block_error">;  ///< Errors of a block of correlated errors.
-}  // namespace axis
+
+}  // namespace poesy::axis
+
+namespace poesy::sobol {
 
 /// What a study of Sobol' indices computes: its groups, quantities and poses. A panel consists of two independent
 /// samples A and B of all errors, and of mixtures, which take the errors of some groups from B and all others from A.
@@ -229,4 +231,4 @@ class PanelEvaluator {
   PanelSums sums_;
 };
 
-}  // namespace poesy
+}  // namespace poesy::sobol

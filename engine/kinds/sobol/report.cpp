@@ -14,13 +14,13 @@
 #include "engine/report/tables.h"
 #include "engine/schema/settings.h"
 
-namespace poesy {
+namespace poesy::sobol {
 namespace {
 
 constexpr std::size_t kMostPairs = 10;  ///< largest number of pairs in a table
 
 /// The word for what has an index in a result: "group" if errors are joined, otherwise "error".
-std::string word(const SobolResult& found) { return found.joined ? "group" : "error"; }
+std::string word(const Result& found) { return found.joined ? "group" : "error"; }
 
 double or_least(double value) { return std::isnan(value) ? -std::numeric_limits<double>::infinity() : value; }
 
@@ -32,13 +32,13 @@ std::vector<std::size_t> by_size(std::span<const double> shares) {
 }
 
 /// The shares that rank groups: Shapley effects if there are any, otherwise total indices.
-std::span<const double> ranked_shares(const SobolResult& found, std::size_t r) {
+std::span<const double> ranked_shares(const Result& found, std::size_t r) {
   return (found.Sh.empty() ? found.aggregated.ST : found.Sh).value.row(r);
 }
 
 /// The groups in the order that the user chose. Indices here are shares without a unit, so RowOrder::index is the same
 /// as RowOrder::effect.
-std::vector<std::size_t> ordered(const SobolResult& found, std::size_t r, RowOrder order) {
+std::vector<std::size_t> ordered(const Result& found, std::size_t r, RowOrder order) {
   std::vector<std::size_t> rows = by_size(ranked_shares(found, r));
   if (order == RowOrder::study) rows = positions(found.groups());
   if (order == RowOrder::name) {
@@ -47,7 +47,7 @@ std::vector<std::size_t> ordered(const SobolResult& found, std::size_t r, RowOrd
   return rows;
 }
 
-FilledColumn group_column(const SobolResult& found) {
+FilledColumn group_column(const Result& found) {
   return {text_column(word(found), word(found)), [&](std::size_t g) { return text_cell(found.group_names[g]); }};
 }
 
@@ -65,7 +65,7 @@ void append_shares(std::vector<FilledColumn>& columns, const std::string& name,
 }
 
 /// Columns with S1, ST, their intervals, and the difference ST - S1.
-std::vector<FilledColumn> index_columns(const SobolResult& found, std::size_t r) {
+std::vector<FilledColumn> index_columns(const Result& found, std::size_t r) {
   const auto& [conf_level, S1, ST] = found.aggregated;
   std::vector<FilledColumn> columns{group_column(found)};
   append_shares(columns, "S1", S1, r);
@@ -78,7 +78,7 @@ std::vector<FilledColumn> index_columns(const SobolResult& found, std::size_t r)
 
 double sum_of(std::span<const double> values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
-std::string sums_text(const SobolResult& found, std::size_t r) {
+std::string sums_text(const Result& found, std::size_t r) {
   const double total = sum_of(found.aggregated.ST.value.row(r));
   if (std::isnan(total)) {
     return fmt::format("- for a {} with errors that are correlated with others outside it", word(found));
@@ -96,7 +96,7 @@ std::string without_sign_text(const std::string& responses, bool several) {
 }
 
 Table response_table(const StoredResult& result, std::size_t r, RowOrder order) {
-  const SobolResult& found = sobol_of(result);
+  const Result& found = sobol_of(result);
   Table table{
       .name = "sobol_" + result.responses[r].name,
       .caption = fmt::format("{}: shares of its variance, over {}", result.responses[r].name,
@@ -121,13 +121,13 @@ Table response_table(const StoredResult& result, std::size_t r, RowOrder order) 
   return table;
 }
 
-bool vector_varies(const SobolResult& found, std::size_t v) {
+bool vector_varies(const Result& found, std::size_t v) {
   return found.vector_varies.empty() || found.vector_varies(v) != 0;
 }
 
 /// A note like "displacement and delta_mu_21_omega do not vary, so no error has a share of them"; empty if all vectors
 /// vary.
-std::string constant_vectors_text(const SobolResult& found) {
+std::string constant_vectors_text(const Result& found) {
   std::vector<std::string> names;
   for (std::size_t v = 0; v < found.vectors.size(); ++v) {
     if (!vector_varies(found, v)) names.push_back(found.vectors[v]);
@@ -141,7 +141,7 @@ std::string constant_vectors_text(const SobolResult& found) {
 /// The table of total indices of all vectors, with a column for each vector. The lines are ordered by the first vector
 /// that varies.
 Table vectors_table(const StoredResult& result) {
-  const SobolResult& found = sobol_of(result);
+  const Result& found = sobol_of(result);
   const std::vector<std::size_t> vectors = positions(found.vectors.size());
   const auto first = std::ranges::find_if(vectors, [&](std::size_t v) { return vector_varies(found, v); });
   const auto& ST = found.of_vectors.ST.value;
@@ -161,7 +161,7 @@ Table vectors_table(const StoredResult& result) {
 
 /// The table of the pairs with the largest second-order indices on a response.
 Table pairs_table(const StoredResult& result, std::size_t r) {
-  const SobolResult& found = sobol_of(result);
+  const Result& found = sobol_of(result);
   std::vector<GroupPair> pairs = group_pairs(found.groups());
   std::ranges::stable_sort(pairs, std::ranges::greater(),
                            [&](const GroupPair& pair) { return or_least(found.S2.value(r, pair.first, pair.second)); });
@@ -228,7 +228,7 @@ Bars share_bars(const StoredResult& result, ArrayPool& pool, const std::string& 
 }
 
 void add_index_bars(const StoredResult& result, Page& page, Section& section) {
-  const SobolResult& found = sobol_of(result);
+  const Result& found = sobol_of(result);
   add_figure(page, section, "sobol",
              share_bars(result, page.figures.pool, "sobol",
                         {{"ST, with interactions", found.aggregated.ST}, {"S1, alone", found.aggregated.S1}}),
@@ -236,7 +236,7 @@ void add_index_bars(const StoredResult& result, Page& page, Section& section) {
 }
 
 void add_shapley_bars(const StoredResult& result, Page& page, Section& section) {
-  const SobolResult& found = sobol_of(result);
+  const Result& found = sobol_of(result);
   if (found.Sh.empty()) return;
   add_figure(page, section, "shapley", share_bars(result, page.figures.pool, "shapley", {{"Sh", found.Sh}}),
              fmt::format("Shapley effect of each {}: what several make together is divided evenly among them, so the "
@@ -245,7 +245,7 @@ void add_shapley_bars(const StoredResult& result, Page& page, Section& section) 
 }
 
 void add_shares(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  const SobolResult& found = sobol_of(result);
+  const Result& found = sobol_of(result);
   Section& section = page.add_section("which-errors-matter", "Which errors make the scatter");
   section.paragraph(fmt::format(
       "All {} vary at once, with the same values at all {}: a machine is built once. S1 is the share of a response's "
@@ -271,7 +271,7 @@ void add_shares(const StoredResult& result, std::span<const Table> tables, Page&
 }
 
 void add_pairs(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  const SobolResult& found = sobol_of(result);
+  const Result& found = sobol_of(result);
   if (found.S2.empty()) return;
   Section& section = page.add_section("pairs", "Which errors interact");
   HeatMap map{{}, found.group_names, word(found) + ", in the order of the rows", {}};
@@ -297,7 +297,7 @@ ShownCells cells(const StoredResult& result) { return shown_cells(result, 2 * so
 
 /// Adds to the page the section that shows ST and S1 at each pose.
 void add_where(const StoredResult& result, Page& page) {
-  const SobolResult& found = sobol_of(result);
+  const Result& found = sobol_of(result);
   const PoseFigures figures(result, cells(result), page);
   Section& section = page.add_section("where", "Where in the workspace");
   figures.add_note(section);
@@ -341,7 +341,7 @@ void warn(const StoredResult& result, std::vector<std::string>& list) {
 /// The shares of errors in the variance of the response by which errors are ranked, and the variance of this response
 /// at each pose. The shares are Shapley effects if there are any, because these add up to 1; otherwise total indices.
 ErrorShares error_shares(const StoredResult& result) {
-  const SobolResult& found = sobol_of(result);
+  const Result& found = sobol_of(result);
   if (found.n.empty()) return {};
   const std::size_t r = response_named(result, default_ranking(result));
   if (!varies(result, r)) return {};
@@ -355,7 +355,7 @@ ErrorShares error_shares(const StoredResult& result) {
 }
 
 /// The largest shares as text: "delta_1 (41 %), delta_2 (12 %)".
-std::string largest_shares(const SobolResult& found, std::span<const double> shares) {
+std::string largest_shares(const Result& found, std::span<const double> shares) {
   constexpr std::size_t kMost = 3;
   const std::vector<std::size_t> order = by_size(shares);
   std::string text;
@@ -366,7 +366,7 @@ std::string largest_shares(const SobolResult& found, std::span<const double> sha
 }
 
 /// What to make smaller first: the row with the largest total index and, by size, those that cannot be told from it.
-std::string advice(const SobolResult& found, std::size_t r) {
+std::string advice(const Result& found, std::size_t r) {
   const auto& ST = found.aggregated.ST;
   const std::vector<std::size_t> order = by_size(ST.value.row(r));
   std::vector<std::string> names;
@@ -382,7 +382,7 @@ std::string advice(const SobolResult& found, std::size_t r) {
 /// Shapley effects if there are any.
 Answer answer(const StoredResult& result) {
   constexpr double kWide = 0.2;
-  const SobolResult& found = sobol_of(result);
+  const Result& found = sobol_of(result);
   if (found.n.empty()) return {};
   const std::size_t r = response_named(result, default_ranking(result));
   const std::string& response = result.responses[r].name;
@@ -418,7 +418,7 @@ Answer answer(const StoredResult& result) {
 /// The figure of merit by which two results are compared: the root mean square of the response over the samples of all
 /// poses.
 std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
-  const SobolResult& found = sobol_of(result);
+  const Result& found = sobol_of(result);
   if (name.empty() || found.mean.empty()) return {};
   const std::size_t r = response_named(result, name);
   double sum = 0.0;
@@ -430,7 +430,7 @@ std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
 }
 
 Comparable comparable(const StoredResult& result, const StoredResult& other) {
-  const SobolResult& found = sobol_of(result);
+  const Result& found = sobol_of(result);
   Comparable all{"response", names_of(result.responses, response_order(result)), word(found), found.group_names};
   const std::vector<std::vector<std::string>> units(all.options.size(), {""});
   const auto add = [&](std::string label, std::string array, const SharesOfResponses& shares) {
@@ -447,7 +447,7 @@ Comparable comparable(const StoredResult& result, const StoredResult& other) {
 }  // namespace
 
 std::vector<Table> sobol_tables(const StoredResult& result, const TableOptions& options) {
-  const SobolResult& found = sobol_of(result);
+  const Result& found = sobol_of(result);
   std::vector<Table> tables;
   const std::vector<std::size_t> order = varying_first(result, result.headline);
   for (const std::size_t r : order) tables.push_back(response_table(result, r, options.order));
@@ -471,18 +471,18 @@ MethodWords method(const StoredResult& result) {
 
 }  // namespace
 
-constinit const ReportKind kSobolReport{.tally = tally,
-                                        .tables = sobol_tables,
-                                        .merits = merits,
-                                        .sorts = true,
-                                        .settling = settling,
-                                        .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
-                                        .method = method,
-                                        .warn = warn,
-                                        .answer = answer,
-                                        .shown_cells = cells,
-                                        .page = add_page,
-                                        .error_shares = error_shares,
-                                        .comparable = comparable};
+constinit const ReportKind kReport{.tally = tally,
+                                   .tables = sobol_tables,
+                                   .merits = merits,
+                                   .sorts = true,
+                                   .settling = settling,
+                                   .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
+                                   .method = method,
+                                   .warn = warn,
+                                   .answer = answer,
+                                   .shown_cells = cells,
+                                   .page = add_page,
+                                   .error_shares = error_shares,
+                                   .comparable = comparable};
 
-}  // namespace poesy
+}  // namespace poesy::sobol

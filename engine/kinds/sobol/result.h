@@ -18,15 +18,17 @@
 #include "engine/stats/moments.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::axis {
 
-namespace axis {
 /// Errors, or groups of errors, among which variances are divided. In the file of a study that does not join errors,
 /// the axis has the name "factor".
 using ErrorGroup = Axis<"group">;
 using OtherGroup = Axis<"other">;     ///< Second groups of pairs.
 using SignedVector = Axis<"vector">;  ///< Vectors of components with a sign and one unit.
-}  // namespace axis
+
+}  // namespace poesy::axis
+
+namespace poesy::sobol {
 
 /// How errors are joined into groups. The errors of a group vary together.
 enum class GroupsBy {
@@ -53,7 +55,7 @@ struct NamedGroup {
 inline constexpr std::size_t kMostShapleyGroups = 8;
 
 /// The options of a study of Sobol' indices.
-struct SobolOptions {
+struct Options {
   GroupsBy groups_by = GroupsBy::none;   ///< how errors are joined
   std::vector<NamedGroup> named_groups;  ///< groups that the study lists, for GroupsBy::name
   bool second_order = false;             ///< whether the second-order index of each pair of groups is computed
@@ -66,7 +68,7 @@ std::string_view name(GroupsBy by);    ///< The word for this choice in study fi
 std::string_view name(Design design);  ///< The word for this design in study files.
 
 /// The kind of study `sobol`, which divides the variance of each response among the errors.
-extern const StudyKind kSobolStudy;
+extern const StudyKind kStudy;
 
 /// Shares that errors or groups have in the variance of some quantities, with confidence intervals. NaN for a quantity
 /// that does not vary (stats/indices.h), and for a group whose errors are correlated with errors of other groups.
@@ -107,7 +109,7 @@ struct SobolIndices {
 };
 
 /// The result of a study of Sobol' indices. Each error is a group, unless the study joins errors.
-struct SobolResult {
+struct Result {
   bool joined = false;                     ///< whether errors are joined into groups
   std::vector<std::string> group_names;    ///< names of the groups; a group of one error has the name of the error
   std::vector<std::string> group_members;  ///< names of each group's errors, separated by blanks
@@ -148,10 +150,10 @@ struct SobolResult {
 std::size_t sobol_bytes(const AxisLengths& lengths);
 
 /// The Sobol' indices in a stored result. Precondition: the result is of kind `sobol`.
-inline const SobolResult& sobol_of(const StoredResult& result) { return found_of<SobolResult>(result); }
+inline const Result& sobol_of(const StoredResult& result) { return found_of<Result>(result); }
 
 /// Tables of first-order and total indices over all poses for each response that a summary shows, then tables of the
 /// signed vectors and of the pairs of groups.
 std::vector<Table> sobol_tables(const StoredResult& result, const TableOptions& options = {});
 
-}  // namespace poesy
+}  // namespace poesy::sobol

@@ -17,7 +17,7 @@
 #include "engine/run/unit_fold.h"
 #include "engine/stats/merge_tree.h"
 
-namespace poesy {
+namespace poesy::sobol {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -91,7 +91,7 @@ struct PanelJob {
   const Study& study;
   IndexPanel panel{study, plan.poses().size()};
   std::vector<double> rounding = row_rounding(panel, plan, model);  ///< [rows] rounding of each row, see row_rounding()
-  PanelDesign design{plan, asked_of<SobolOptions>(study.analysis)};
+  PanelDesign design{plan, asked_of<Options>(study.analysis)};
 
   static constexpr std::string_view kName = "panel";
   std::vector<std::uint64_t> sizes() const {
@@ -141,7 +141,7 @@ void set(Indices& indices, const IndexSums& sums, Positions... at) {
 }
 
 /// Sets all numbers of response r in the result.
-void set_response(const IndexPanel& panel, const PanelSums& sums, std::size_t r, SobolResult& found) {
+void set_response(const IndexPanel& panel, const PanelSums& sums, std::size_t r, Result& found) {
   const double level = found.aggregated.conf_level;
   for (std::size_t g = 0; g < panel.groups.size(); ++g) {
     set(found.aggregated, sums.aggregated(r, g), r, g);
@@ -166,10 +166,10 @@ void set_response(const IndexPanel& panel, const PanelSums& sums, std::size_t r,
 }
 
 /// A result with arrays of the right lengths, whose numbers are not yet set.
-SobolResult room_for(const IndexPanel& panel, double level) {
+Result room_for(const IndexPanel& panel, double level) {
   const std::size_t responses = panel.responses;
   const std::size_t groups = panel.groups.size();
-  SobolResult found;
+  Result found;
   found.at_poses.conf_level = found.aggregated.conf_level = found.of_vectors.conf_level = level;
   make_room({responses, groups, panel.poses}, found.at_poses.S1, found.at_poses.ST, found.n);
   make_room({responses, groups}, found.aggregated.S1, found.aggregated.ST);
@@ -189,10 +189,9 @@ std::string members_text(const ErrorGroup& group, const Study& study) {
   return text;
 }
 
-SobolResult result_of(const Study& study, const IndexPanel& panel, const PanelSums& sums,
-                      std::span<const double> rounding) {
-  SobolResult found = room_for(panel, study.analysis.conf_level);
-  found.joined = asked_of<SobolOptions>(study.analysis).groups_by != GroupsBy::none;
+Result result_of(const Study& study, const IndexPanel& panel, const PanelSums& sums, std::span<const double> rounding) {
+  Result found = room_for(panel, study.analysis.conf_level);
+  found.joined = asked_of<Options>(study.analysis).groups_by != GroupsBy::none;
   for (const ErrorGroup& group : panel.groups) {
     found.group_names.push_back(group.name);
     found.group_members.push_back(members_text(group, study));
@@ -206,7 +205,7 @@ SobolResult result_of(const Study& study, const IndexPanel& panel, const PanelSu
   }
   leave_out_constant(panel, sums, rounding, found);
   found.solves = sums.solves;
-  if (asked_of<SobolOptions>(study.analysis).design != Design::random)
+  if (asked_of<Options>(study.analysis).design != Design::random)
     return found;  // `poesy replay` cannot repeat samples of other designs
   for (std::size_t m = 0; m < panel.poses; ++m) {
     append_failures(0, PoseIndex(m), sums.failed[m], found.failures);
@@ -221,7 +220,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   UnitFold work(job, run.options);
   if (!fold(work, run.options) || run.options.shard || !run.makes_result()) return std::nullopt;
   std::optional<ConvergenceResult> convergence = work.convergence();
-  SobolResult found = result_of(run.study, job.panel, std::move(work).sums().leaves.total(), job.rounding);
+  Result found = result_of(run.study, job.panel, std::move(work).sums().leaves.total(), job.rounding);
   found.convergence = std::move(convergence);
   return StudyResult{std::move(found), std::nullopt, {}};
 }
@@ -231,7 +230,7 @@ struct Trial {
   Trial(const Study& study, const Model& model, const PoseSet& poses)
       : plan(study, poses),
         panel(study, poses.size()),
-        design(plan, asked_of<SobolOptions>(study.analysis)),
+        design(plan, asked_of<Options>(study.analysis)),
         evaluate(plan, model, panel, design) {}
 
   double solves() const {
@@ -273,16 +272,14 @@ Outlook sobol_outlook(const Study& study, const Model& model, const PoseSet& pos
 
 /// The largest number of shards: the number of replicates of a design, or of units of random draws.
 std::size_t most_shards(const Study& study, std::size_t) {
-  const SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
+  const Options& asked = asked_of<Options>(study.analysis);
   if (asked.design != Design::random) return asked.replicates;
   return (study.analysis.samples + PanelDesign::kUnitSamples - 1) / PanelDesign::kUnitSamples;
 }
 
 }  // namespace
 
-constinit const Kind kSobolKind{.study = kSobolStudy,
-                                .run = {run_study_of_kind, sobol_outlook, most_shards},
-                                .file = kSobolFile,
-                                .report = kSobolReport};
+constinit const Kind kKind{
+    .study = kStudy, .run = {run_study_of_kind, sobol_outlook, most_shards}, .file = kFile, .report = kReport};
 
-}  // namespace poesy
+}  // namespace poesy::sobol

@@ -7,10 +7,8 @@
 #include "engine/result/csv_table.h"
 #include "engine/result/result_parts.h"
 
-namespace poesy {
+namespace poesy::sweep {
 namespace {
-
-using Result = SweepResult;
 
 constexpr const char* kQuantityUnit = "unit of the quantity, see /sweep/quantity_unit";
 
@@ -99,6 +97,6 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
 
 }  // namespace
 
-constinit const FileKind kSweepFile{.write = write, .read = read, .append_tables = append_tables};
+constinit const FileKind kFile{.write = write, .read = read, .append_tables = append_tables};
 
-}  // namespace poesy
+}  // namespace poesy::sweep

@@ -2,15 +2,15 @@
 
 #include "engine/kinds/kind.h"
 
-namespace poesy {
+namespace poesy::sweep {
 
 /// The kind of results that `poesy sweep` writes. No study has this kind.
-extern const Kind kSweepKind;
+extern const Kind kKind;
 
 /// How results of sweeps are stored and reported.
 /// @{
-extern const FileKind kSweepFile;
-extern const ReportKind kSweepReport;
+extern const FileKind kFile;
+extern const ReportKind kReport;
 /// @}
 
-}  // namespace poesy
+}  // namespace poesy::sweep

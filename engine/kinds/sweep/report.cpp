@@ -17,7 +17,7 @@
 #include "engine/report/sources.h"
 #include "engine/report/tables.h"
 
-namespace poesy {
+namespace poesy::sweep {
 namespace {
 
 constexpr int kDigits = 4;
@@ -29,7 +29,7 @@ std::string slug(std::string text) {
   return text;
 }
 
-bool has_numbers(const SweepResult& found, std::size_t key) {
+bool has_numbers(const Result& found, std::size_t key) {
   for (std::size_t d = 0; d < found.designs(); ++d) {
     if (std::isnan(found.number(d, key))) return false;
   }
@@ -42,27 +42,27 @@ bool has_any(std::span<const double> values) {
 
 /// Whether figure of merit q is estimated from random draws, so that some interval has a width. Without draws, both
 /// ends of an interval equal the value.
-bool is_by_chance(const SweepResult& found, std::size_t q) {
+bool is_by_chance(const Result& found, std::size_t q) {
   for (std::size_t d = 0; d < found.designs(); ++d) {
     if (found.low(q, d) < found.high(q, d)) return true;
   }
   return false;
 }
 
-std::string value_text(const SweepResult& found, std::size_t q, double value) {
+std::string value_text(const Result& found, std::size_t q, double value) {
   const std::string& unit = found.quantity_unit(q);
   if (unit == "%") return percent_text(value / 100.0);
   return number_text(value, kDigits) + (unit.empty() ? "" : " " + unit);
 }
 
-std::string unit_of_change(const SweepResult& found, std::size_t q) {
+std::string unit_of_change(const Result& found, std::size_t q) {
   const std::string& unit = found.quantity_unit(q);
   return unit == "%" ? " percentage points" : unit.empty() ? "" : " " + unit;
 }
 
 /// The requirement, such as "limits", in which designs d and e differ and on which figure of merit q depends. Empty if
 /// there is none; the two designs can then be compared by q.
-std::string_view required_otherwise(const SweepResult& found, std::size_t q, std::size_t d, std::size_t e) {
+std::string_view required_otherwise(const Result& found, std::size_t q, std::size_t d, std::size_t e) {
   for (std::size_t k = 0; k < found.keys.size(); ++k) {
     const std::string& key = found.keys[k];
     const std::string_view topic = required_by(key, found.quantities[q]);
@@ -74,7 +74,7 @@ std::string_view required_otherwise(const SweepResult& found, std::size_t q, std
 
 /// The requirement, such as "limits", in which some design differs from the first one and on which figure of merit q
 /// depends. Empty if there is none; all designs can then be compared by q.
-std::string_view required_otherwise(const SweepResult& found, std::size_t q) {
+std::string_view required_otherwise(const Result& found, std::size_t q) {
   for (std::size_t d = 1; d < found.designs(); ++d) {
     if (const std::string_view topic = required_otherwise(found, q, d, 0); !topic.empty()) return topic;
   }
@@ -92,20 +92,20 @@ std::string_view verdict_on_change(double low, double high, bool most_is_best) {
 
 /// The verdict on design d compared with the first one: that of verdict_on_change(), or a text like "other limits" if
 /// the two designs differ in a requirement.
-std::string verdict_on_first(const SweepResult& found, std::size_t q, std::size_t d) {
+std::string verdict_on_first(const Result& found, std::size_t q, std::size_t d) {
   if (const std::string_view topic = required_otherwise(found, q, d, 0); !topic.empty()) {
     return fmt::format("other {}", topic);
   }
   return std::string(verdict_on_change(found.change_low(q, d), found.change_high(q, d), found.most_is_best(q) != 0));
 }
 
-std::string_view verdict_on_best(const SweepResult& found, std::size_t q, std::size_t d) {
+std::string_view verdict_on_best(const Result& found, std::size_t q, std::size_t d) {
   if (d == best_design(found, q)) return "the best";
   return verdict_on_change(found.from_best_low(q, d), found.from_best_high(q, d), found.most_is_best(q) != 0);
 }
 
 /// The designs that have this verdict of verdict_on_best().
-std::vector<std::size_t> designs_with(const SweepResult& found, std::size_t q, std::string_view verdict) {
+std::vector<std::size_t> designs_with(const Result& found, std::size_t q, std::string_view verdict) {
   std::vector<std::size_t> list;
   for (std::size_t d = 0; d < found.designs(); ++d) {
     if (verdict_on_best(found, q, d) == verdict) list.push_back(d);
@@ -114,7 +114,7 @@ std::vector<std::size_t> designs_with(const SweepResult& found, std::size_t q, s
 }
 
 /// The names of designs in one text: "490, 500 mm" if only one key differs and its values are numbers.
-std::string joined_names(const SweepResult& found, std::span<const std::size_t> designs) {
+std::string joined_names(const Result& found, std::span<const std::size_t> designs) {
   constexpr std::size_t kMost = 8;
   const bool numbers = found.keys.size() == 1 && has_numbers(found, 0);
   std::vector<std::string> names;
@@ -126,7 +126,7 @@ std::string joined_names(const SweepResult& found, std::span<const std::size_t> 
 
 /// A clause on the designs that equal the best one or are not told apart from it: "; not told apart from it: 490, 500
 /// mm". If draws show that all other designs are worse, the clause says so. Otherwise empty.
-std::string near_best_clause(const SweepResult& found, std::size_t q) {
+std::string near_best_clause(const Result& found, std::size_t q) {
   std::string text;
   for (const auto& [verdict, words] :
        {std::pair("equal", "equal to it"), {"not told apart", "not told apart from it"}}) {
@@ -137,21 +137,21 @@ std::string near_best_clause(const SweepResult& found, std::size_t q) {
   return is_by_chance(found, q) && all_are_worse ? "; all others are told apart from it" : text;
 }
 
-std::string names_of_keys(const SweepResult& found) {
+std::string names_of_keys(const Result& found) {
   std::string text;
   for (std::size_t k = 0; k < found.keys.size(); ++k) text += (k == 0 ? "" : " and ") + short_key(found, k);
   return text;
 }
 
 /// A figure of merit of a design, with the name of the design: "42.3 % at tip_position = 0.1 mm".
-std::string at_design(const SweepResult& found, std::size_t q, std::size_t d) {
+std::string at_design(const Result& found, std::size_t q, std::size_t d) {
   return fmt::format("{} at {}", value_text(found, q, found.merit(q, d)), design_name(found, d));
 }
 
 /// A sentence for designs that differ in a requirement: "No design is called best, because the limits differ
 /// (tip_position): the yield is 42.3 % at tip_position = 0.1 mm, the first design, and 96.3 % at tip_position = 0.2 mm,
 /// the last."
-std::string no_best_text(const SweepResult& found, std::size_t q, std::string_view topic) {
+std::string no_best_text(const Result& found, std::size_t q, std::string_view topic) {
   std::vector<std::string> keys;
   for (std::size_t k = 0; k < found.keys.size(); ++k) {
     if (required_by(found.keys[k], found.quantities[q]) == topic) keys.push_back(short_key(found, k));
@@ -166,7 +166,7 @@ std::string no_best_text(const SweepResult& found, std::size_t q, std::string_vi
 /// Sentences on the best design: "The yield is largest at R = 375 mm: 78.9 %; not told apart from it: 350 mm. At R =
 /// 150 mm, the first design, it is 14.1 %; from there to the best it changes by +64.8 percentage points (interval +63.5
 /// to +66.1)."
-std::string best_text(const SweepResult& found, std::size_t q) {
+std::string best_text(const Result& found, std::size_t q) {
   if (const std::string_view topic = required_otherwise(found, q); !topic.empty()) return no_best_text(found, q, topic);
   const std::optional<std::size_t> best = best_design(found, q);
   if (!best) return fmt::format("The {} is not known of any design.", found.quantities[q]);
@@ -185,14 +185,14 @@ std::string best_text(const SweepResult& found, std::size_t q) {
 }
 
 /// A note on what the intervals of changes from the best design do not take into account.
-std::string best_note(const SweepResult& found) {
+std::string best_note(const Result& found) {
   return fmt::format(
       "against the best: each interval alone has the level {}; the best design was chosen by the same numbers, so its "
       "value tends to be too good",
       percent_text(found.conf_level));
 }
 
-std::string interval_note(const SweepResult& found, std::size_t q) {
+std::string interval_note(const Result& found, std::size_t q) {
   const std::string level = percent_text(found.conf_level);
   if (found.is_paired(q) != 0) {
     return fmt::format(
@@ -216,7 +216,7 @@ std::string_view limits_word(std::string_view verdict) {
   return verdict == "undecided" ? "UNDECIDED" : "";
 }
 
-FilledColumn key_column(const SweepResult& found, std::size_t k) {
+FilledColumn key_column(const Result& found, std::size_t k) {
   const std::string name = short_key(found, k);
   if (!has_numbers(found, k)) {
     return {text_column(slug(found.keys[k]), name),
@@ -228,12 +228,12 @@ FilledColumn key_column(const SweepResult& found, std::size_t k) {
 
 /// True if a table shows changes from the best design: they have intervals, no requirement differs, and there are more
 /// than two designs.
-bool shows_best(const SweepResult& found, std::size_t q) {
+bool shows_best(const Result& found, std::size_t q) {
   return found.designs() > 2 && required_otherwise(found, q).empty() && has_any(found.from_best_low.row(q));
 }
 
 /// The table of one figure of merit, with a row for each design.
-Table quantity_table(const SweepResult& found, std::size_t q) {
+Table quantity_table(const Result& found, std::size_t q) {
   const std::string& unit = found.quantity_unit(q);
   Table table{.name = slug(found.quantities[q]),
               .caption = fmt::format("The {} by {}, and its change from the first{} design", found.quantities[q],
@@ -241,12 +241,12 @@ Table quantity_table(const SweepResult& found, std::size_t q) {
               .columns = {}};
   std::vector<FilledColumn> columns;
   for (std::size_t k = 0; k < found.keys.size(); ++k) columns.push_back(key_column(found, k));
-  const auto number = [&](const std::string& name, const std::string& heading, const SweepResult::Numbers& numbers,
+  const auto number = [&](const std::string& name, const std::string& heading, const Result::Numbers& numbers,
                           int dispensable = 0) {
     columns.push_back({number_column(name, heading, unit, dispensable),
                        [&numbers, q](std::size_t d) { return number_cell(numbers(q, d), kDigits); }});
   };
-  const auto change = [&](const std::string& name, const std::string& heading, const SweepResult::Numbers& numbers,
+  const auto change = [&](const std::string& name, const std::string& heading, const Result::Numbers& numbers,
                           int dispensable = 0) {
     columns.push_back({number_column(name, heading, unit == "%" ? "points" : unit, dispensable),
                        [&numbers, q](std::size_t d) { return change_cell(numbers(q, d)); }});
@@ -290,7 +290,7 @@ Table quantity_table(const SweepResult& found, std::size_t q) {
 }
 
 std::vector<Table> sweep_tables(const StoredResult& result, const TableOptions&) {
-  const SweepResult& found = sweep_of(result);
+  const Result& found = sweep_of(result);
   std::vector<Table> tables;
   for (std::size_t q = 0; q < found.quantities.size(); ++q) tables.push_back(quantity_table(found, q));
   tables.back().notes.push_back(
@@ -299,20 +299,20 @@ std::vector<Table> sweep_tables(const StoredResult& result, const TableOptions&)
   return tables;
 }
 
-std::vector<std::string> design_names(const SweepResult& found) {
+std::vector<std::string> design_names(const Result& found) {
   std::vector<std::string> names;
   for (std::size_t d = 0; d < found.designs(); ++d) names.push_back(design_name(found, d));
   return names;
 }
 
 SolveTally tally(const StoredResult& result) {
-  const SweepResult& found = sweep_of(result);
+  const Result& found = sweep_of(result);
   return {"design", design_names(found), 1, found.solves};
 }
 
 /// A sentence on how certain it is which design is the best. Empty if the changes have no intervals or are exact, or if
 /// designs differ in a requirement.
-std::string best_certainty(const SweepResult& found, std::size_t q) {
+std::string best_certainty(const Result& found, std::size_t q) {
   const bool is_compared = required_otherwise(found, q).empty() && has_any(found.from_best_low.row(q));
   if (!is_compared || !is_by_chance(found, q)) return {};
   return fmt::format(
@@ -323,7 +323,7 @@ std::string best_certainty(const SweepResult& found, std::size_t q) {
 
 /// Whether more samples make the interval of figure of merit q narrower. For a yield they do not if errors are drawn
 /// from measured parts, because the number of parts limits how well it is known.
-bool narrows(const StoredResult& result, const SweepResult& found, std::size_t q) {
+bool narrows(const StoredResult& result, const Result& found, std::size_t q) {
   return found.quantities[q] != kYieldMerit ||
          std::ranges::none_of(readable_settings(result.study_text), [](const auto& setting) {
            return setting.first.starts_with("errors.") && setting.second.find("measured") != std::string::npos;
@@ -331,7 +331,7 @@ bool narrows(const StoredResult& result, const SweepResult& found, std::size_t q
 }
 
 /// Advice that follows from the best design.
-std::string what_to_do(const StoredResult& result, const SweepResult& found, std::size_t q) {
+std::string what_to_do(const StoredResult& result, const Result& found, std::size_t q) {
   if (const std::string_view topic = required_otherwise(found, q); !topic.empty()) {
     return fmt::format("Compare designs with the same {}.", topic);
   }
@@ -346,7 +346,7 @@ std::string what_to_do(const StoredResult& result, const SweepResult& found, std
 }
 
 /// A sentence on how many designs keep the limits; empty if no design is judged by limits.
-std::string passes_text(const SweepResult& found) {
+std::string passes_text(const Result& found) {
   const auto count = [&](std::string_view verdict) { return std::ranges::count(found.verdict.all(), verdict); };
   const std::size_t all = found.designs();
   if (static_cast<std::size_t>(count("not kept")) == all) return fmt::format("All {} designs FAIL.", all);
@@ -356,7 +356,7 @@ std::string passes_text(const SweepResult& found) {
 }
 
 Answer answer(const StoredResult& result) {
-  const SweepResult& found = sweep_of(result);
+  const Result& found = sweep_of(result);
   std::string best = passes_text(found);
   for (std::size_t q = 0; q < found.quantities.size(); ++q) best += (best.empty() ? "" : " ") + best_text(found, q);
   const bool paired = std::ranges::any_of(found.is_paired.all(), [](std::uint8_t is) { return is != 0; });
@@ -373,7 +373,7 @@ struct Grid {
   std::size_t points = 0;  ///< number of values of the first key
   std::size_t curves = 0;  ///< number of combinations of the other keys' values
 
-  explicit Grid(const SweepResult& found) {
+  explicit Grid(const Result& found) {
     // The last key changes fastest, so the first key keeps its value for as many designs as there are curves.
     const auto is_first = [&](std::size_t d) { return found.value(d, 0) == found.value(0, 0); };
     while (curves < found.designs() && is_first(curves)) ++curves;
@@ -381,7 +381,7 @@ struct Grid {
   }
 };
 
-std::string curve_name(const SweepResult& found, std::size_t design) {
+std::string curve_name(const Result& found, std::size_t design) {
   std::string text;
   for (std::size_t k = 1; k < found.keys.size(); ++k) {
     text += fmt::format("{}{} = {}", k == 1 ? "" : ", ", short_key(found, k), found.value(design, k));
@@ -392,7 +392,7 @@ std::string curve_name(const SweepResult& found, std::size_t design) {
 /// Draws numbers of all designs as curves, with intervals if there are any.
 class Curves {
  public:
-  Curves(const SweepResult& found, ArrayPool& pool) : found_(found), grid_(found), pool_(pool) {}
+  Curves(const Result& found, ArrayPool& pool) : found_(found), grid_(found), pool_(pool) {}
 
   Coordinate x() const {
     std::vector<double> values(grid_.points);
@@ -403,12 +403,12 @@ class Curves {
     const std::string name = short_key(found_, 0);
     return {numbers ? name : "number of " + name, numbers ? found_.unit(0) : "", pool_.add("swept", values)};
   }
-  Panel panel(const std::string& label, const std::string& unit, std::size_t q, const SweepResult::Numbers& value,
-              const SweepResult::Numbers& low, const SweepResult::Numbers& high) const {
+  Panel panel(const std::string& label, const std::string& unit, std::size_t q, const Result::Numbers& value,
+              const Result::Numbers& low, const Result::Numbers& high) const {
     Panel panel{label, unit, {}};
     for (std::size_t c = 0; c < grid_.curves; ++c) {
       const std::string name = grid_.curves > 1 ? curve_name(found_, c) : found_.quantities[q];
-      const auto add = [&](const char* what, const SweepResult::Numbers& numbers) {
+      const auto add = [&](const char* what, const Result::Numbers& numbers) {
         if (!has_any(numbers.row(q))) return ArrayName();
         return pool_.add(fmt::format("{}/{}/{}/{}", label, what, q, c), curve(numbers.row(q), c));
       };
@@ -427,13 +427,13 @@ class Curves {
     return of_curve;
   }
 
-  const SweepResult& found_;
+  const Result& found_;
   Grid grid_;
   ArrayPool& pool_;
 };
 
 void add_page(const StoredResult& result, std::span<const Table> tables, Page& page) {
-  const SweepResult& found = sweep_of(result);
+  const Result& found = sweep_of(result);
   const Curves curves(found, page.figures.pool);
   for (std::size_t q = 0; q < found.quantities.size(); ++q) {
     const std::string& what = found.quantities[q];
@@ -451,10 +451,10 @@ void add_page(const StoredResult& result, std::span<const Table> tables, Page& p
 }
 
 Comparable comparable(const StoredResult& result, const StoredResult&) {
-  const SweepResult& found = sweep_of(result);
+  const Result& found = sweep_of(result);
   Comparable all{
       .option_word = "quantity", .options = found.quantities, .item_word = "design", .items = design_names(found)};
-  const auto list = [](const SweepResult::Numbers& numbers) {
+  const auto list = [](const Result::Numbers& numbers) {
     return std::vector<double>(numbers.all().begin(), numbers.all().end());
   };
   std::vector<std::vector<std::string>> units;
@@ -464,7 +464,7 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
 }
 
 /// The values of a key in all designs, each once: "150, 200, 250 mm".
-std::string values_of_key(const SweepResult& found, std::size_t k) {
+std::string values_of_key(const Result& found, std::size_t k) {
   std::vector<std::string> values;
   const bool numbers = has_numbers(found, k);
   for (std::size_t d = 0; d < found.designs(); ++d) {
@@ -476,7 +476,7 @@ std::string values_of_key(const SweepResult& found, std::size_t k) {
 }
 
 MethodWords method(const StoredResult& result) {
-  const SweepResult& found = sweep_of(result);
+  const Result& found = sweep_of(result);
   std::vector<std::string> keys;
   for (std::size_t k = 0; k < found.keys.size(); ++k) {
     keys.push_back(fmt::format("{} = {}", found.keys[k], values_of_key(found, k)));
@@ -503,22 +503,20 @@ std::optional<StudyResult> run_nothing(const StudyRun&) { return std::nullopt; }
 /// Returns zeros, because no study has the kind `sweep`; a StudyKind must have this function.
 AtPose nothing_at_pose(const Study&) { return {0.0, "values", 0.0, "solves"}; }
 
-const StudyKind kSweepStudy{
+const StudyKind kStudy{
     .name = "sweep", .asks = "which of several designs is best", .keys = {}, .at_pose = nothing_at_pose};
 
 }  // namespace
 
-constinit const ReportKind kSweepReport{
-    .tally = tally,
-    .tables = sweep_tables,
-    .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
-    .method = method,
-    .answer = answer,
-    .shown_cells = [](const StoredResult& result) { return shown_cells(result, 1); },
-    .page = add_page,
-    .comparable = comparable};
+constinit const ReportKind kReport{.tally = tally,
+                                   .tables = sweep_tables,
+                                   .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
+                                   .method = method,
+                                   .answer = answer,
+                                   .shown_cells = [](const StoredResult& result) { return shown_cells(result, 1); },
+                                   .page = add_page,
+                                   .comparable = comparable};
 
-constinit const Kind kSweepKind{
-    .study = kSweepStudy, .run = {run_nothing, nullptr, nullptr}, .file = kSweepFile, .report = kSweepReport};
+constinit const Kind kKind{.study = kStudy, .run = {run_nothing, nullptr, nullptr}, .file = kFile, .report = kReport};
 
-}  // namespace poesy
+}  // namespace poesy::sweep

@@ -11,17 +11,19 @@
 #include "engine/result/result_file.h"
 #include "engine/run/result.h"
 
-namespace poesy {
+namespace poesy::axis {
 
-namespace axis {
 using Design = Axis<"design">;      ///< Designs of a sweep; each is one study.
 using SweptKey = Axis<"key">;       ///< Keys that differ between designs.
 using Quantity = Axis<"quantity">;  ///< Figures of merit by which designs are compared.
-}  // namespace axis
+
+}  // namespace poesy::axis
+
+namespace poesy::sweep {
 
 /// The result of a sweep: figures of merit of several designs of a study. Figures of merit are in display units, such
 /// as mm.
-struct SweepResult {
+struct Result {
   using Numbers = Array<double, axis::Quantity, axis::Design>;  ///< a number for each figure of merit and design
 
   std::string kind;                                        ///< kind of the studies
@@ -66,15 +68,15 @@ struct SweepResult {
 };
 
 /// The name of a design, from the last parts of the keys' names: "R = 260 mm, sigma = 0.02 mm".
-std::string design_name(const SweepResult& found, std::size_t design);
+std::string design_name(const Result& found, std::size_t design);
 
 /// The last part of a key's name; the whole name if another key has the same last part.
-std::string short_key(const SweepResult& found, std::size_t key);
+std::string short_key(const Result& found, std::size_t key);
 
 /// The design with the best value of a figure of merit, the first of equal ones; none if all values are NaN.
-std::optional<std::size_t> best_design(const SweepResult& found, std::size_t quantity);
+std::optional<std::size_t> best_design(const Result& found, std::size_t quantity);
 
 /// The sweep in a stored result. Precondition: the result is of kind `sweep`.
-inline const SweepResult& sweep_of(const StoredResult& result) { return found_of<SweepResult>(result); }
+inline const Result& sweep_of(const StoredResult& result) { return found_of<Result>(result); }
 
-}  // namespace poesy
+}  // namespace poesy::sweep

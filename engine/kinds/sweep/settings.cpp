@@ -12,7 +12,7 @@
 #include "engine/base/text.h"
 #include "engine/base/units.h"
 
-namespace poesy {
+namespace poesy::sweep {
 namespace {
 
 constexpr const char* kForm = "write KEY=FROM:TO:STEP or KEY=A,B,C, e.g. geometry.R=250:300:10mm";
@@ -150,4 +150,4 @@ std::vector<std::vector<GivenKey>> grid_of(std::span<const SweptKey> keys) {
   return designs;
 }
 
-}  // namespace poesy
+}  // namespace poesy::sweep

@@ -8,7 +8,7 @@
 #include "engine/schema/given_key.h"
 
 /// The keys and values over which a sweep varies a study, as the command line states them.
-namespace poesy {
+namespace poesy::sweep {
 
 /// A key of a study with the values that it takes in the designs of a sweep.
 struct SweptKey {
@@ -35,4 +35,4 @@ struct SweptNumber {
 };
 SweptNumber number_of(const std::string& value);  ///< Reads a value as a number.
 
-}  // namespace poesy
+}  // namespace poesy::sweep

@@ -20,7 +20,7 @@
 #include "engine/stats/proportion.h"
 #include "engine/study/study_kind.h"
 
-namespace poesy {
+namespace poesy::sweep {
 namespace {
 
 std::string verdict_of(const StoredResult& stored) {
@@ -52,9 +52,9 @@ Discordant discordant(const Rejected& first, const Rejected& other) {
 
 /// The arrays of a result for the changes from one design to all others, and for the ends of their intervals.
 struct Changes {
-  SweepResult::Numbers& value;
-  SweepResult::Numbers& low;
-  SweepResult::Numbers& high;
+  Result::Numbers& value;
+  Result::Numbers& low;
+  Result::Numbers& high;
 };
 
 /// Collects the results of designs one after the other, and compares each design with the first and with the best one.
@@ -82,7 +82,7 @@ class Comparer {
   }
 
   /// The comparison. Precondition: all designs were added.
-  SweepResult result() && {
+  Result result() && {
     if (has_machines_) pair_machines();
     for (std::size_t q = 0; q < found_.quantities.size(); ++q) {
       compare_all_with(0, q, {found_.change, found_.change_low, found_.change_high});
@@ -139,7 +139,7 @@ class Comparer {
     }
     for (auto* numbers : {&found_.merit, &found_.low, &found_.high, &found_.change, &found_.change_low,
                           &found_.change_high, &found_.from_best, &found_.from_best_low, &found_.from_best_high}) {
-      *numbers = SweepResult::Numbers({count, designs_.size()}, kNaN);
+      *numbers = Result::Numbers({count, designs_.size()}, kNaN);
     }
     found_.conf_level = has_yield ? stored.verdicts->yield->conf_level : designs_.front().study.analysis.conf_level;
     if (!has_machines_) return;
@@ -224,19 +224,19 @@ class Comparer {
   std::vector<std::vector<Merit>> merits_;  ///< [designs] the figures of merit of each design
   std::vector<Rejected> rejected_;  ///< [designs] which machines each design rejects; empty unless has_machines_
   bool has_machines_ = false;       ///< true if the first design has a yield of machines that were judged
-  SweepResult found_;
+  Result found_;
 };
 
 }  // namespace
 
-std::string short_key(const SweepResult& found, std::size_t key) {
+std::string short_key(const Result& found, std::size_t key) {
   const auto last = [](const std::string& name) { return name.substr(name.find_last_of('.') + 1); };
   const std::string own = last(found.keys[key]);
   const auto alike = std::ranges::count_if(found.keys, [&](const std::string& name) { return last(name) == own; });
   return alike > 1 ? found.keys[key] : own;
 }
 
-std::string design_name(const SweepResult& found, std::size_t design) {
+std::string design_name(const Result& found, std::size_t design) {
   std::string text;
   for (std::size_t k = 0; k < found.keys.size(); ++k) {
     text += fmt::format("{}{} = {}", k == 0 ? "" : ", ", short_key(found, k), found.value(design, k));
@@ -244,7 +244,7 @@ std::string design_name(const SweepResult& found, std::size_t design) {
   return text;
 }
 
-std::optional<std::size_t> best_design(const SweepResult& found, std::size_t quantity) {
+std::optional<std::size_t> best_design(const Result& found, std::size_t quantity) {
   std::optional<std::size_t> best;
   const double sign = found.most_is_best(quantity) != 0 ? 1.0 : -1.0;
   for (std::size_t d = 0; d < found.designs(); ++d) {
@@ -272,9 +272,9 @@ void check_sweep(std::span<const SweptDesign> designs, const std::string& path) 
                    fmt::format("sweep a study of kind {}", either(able)));
 }
 
-std::optional<SweepResult> run_sweep(std::span<const SweptKey> keys, std::span<const SweptDesign> designs,
-                                     const std::string& response, const RunOptions& options,
-                                     const std::function<void(std::size_t)>& begin) {
+std::optional<Result> run_sweep(std::span<const SweptKey> keys, std::span<const SweptDesign> designs,
+                                const std::string& response, const RunOptions& options,
+                                const std::function<void(std::size_t)>& begin) {
   RunOptions of_design = options;
   of_design.keep_rejected = true;
   Comparer comparer(keys, designs, response);
@@ -291,4 +291,4 @@ std::optional<SweepResult> run_sweep(std::span<const SweptKey> keys, std::span<c
   return std::move(comparer).result();
 }
 
-}  // namespace poesy
+}  // namespace poesy::sweep

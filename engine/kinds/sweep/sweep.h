@@ -11,7 +11,7 @@
 #include "engine/study/poses/pose_selection.h"
 #include "engine/study/study.h"
 
-namespace poesy {
+namespace poesy::sweep {
 
 /// A design of a sweep: the study with other values of some keys, and the poses of this study.
 struct SweptDesign {
@@ -30,8 +30,8 @@ void check_sweep(std::span<const SweptDesign> designs, const std::string& path);
 /// all designs, in order. The result of each design has the same bits as a run of this design alone. begin: is called
 /// with the index of each design before its run. Precondition: check_sweep() accepts the designs. Throws InputError if
 /// a design does not have the response, or has no figure of merit.
-std::optional<SweepResult> run_sweep(std::span<const SweptKey> keys, std::span<const SweptDesign> designs,
-                                     const std::string& response, const RunOptions& options,
-                                     const std::function<void(std::size_t)>& begin);
+std::optional<Result> run_sweep(std::span<const SweptKey> keys, std::span<const SweptDesign> designs,
+                                const std::string& response, const RunOptions& options,
+                                const std::function<void(std::size_t)>& begin);
 
-}  // namespace poesy
+}  // namespace poesy::sweep

@@ -45,7 +45,7 @@ class Example {
     study.poses.workspace = {{-0.3, -0.18}, {-0.5, 0.5}, {-0.6, 0.6}};
     study.errors.by_factor.assign(3, Distribution::normal(0.001));
     study.errors.by_factor[1] = Distribution::uniform(0.5);
-    study.analysis.kind = &kSensitivityStudy;
+    study.analysis.kind = &sensitivity::kStudy;
     study.analysis.factors = {FactorIndex(1), FactorIndex(0)};
     study.analysis.samples = 100;
     std::vector<double> coordinates;
@@ -68,8 +68,8 @@ class Example {
   Example(const Example&) = delete;
   Example& operator=(const Example&) = delete;
 
-  SensitivityResult sensitivity() const {
-    SensitivityResult result;
+  sensitivity::Result sensitivity() const {
+    sensitivity::Result result;
     result.conf_level = 0.95;
     std::size_t array = 0;
     for (auto* values : {&result.local, &result.local_ci_low, &result.local_ci_high, &result.mean, &result.std}) {
@@ -84,7 +84,7 @@ class Example {
     }
     result.rounding = {{2}, {1e-15, 2e-15}};
     result.index_change = {{2, 2}, {-0.25, 0.125, 0.0, std::numeric_limits<double>::quiet_NaN()}};
-    result.count = SensitivityResult::Cells<std::uint64_t>({2, 2, kPoses}, 97);
+    result.count = sensitivity::Result::Cells<std::uint64_t>({2, 2, kPoses}, 97);
     result.background = Array<double, axis::Response, axis::Pose>({2, kPoses});
     double next = 0.0;
     for (double& value : result.background) value = next++ / 16.0;
@@ -94,7 +94,7 @@ class Example {
       solves = {.by_status = {90 - cell, 7, 2, 1, cell}, .iterations = 700 + cell, .most_iterations = 50};
       ++cell;
     }
-    set_references(study, result);
+    sensitivity::set_references(study, result);
     if (!study.analysis.adaptive) {
       result.history = {{50, 100}, numbered(array, 2), numbered(array + 1, 2), numbered(array + 2, 2)};
       result.history->ci_high.back() = std::numeric_limits<double>::quiet_NaN();
@@ -114,13 +114,13 @@ class Example {
   }
 
   /// A Monte Carlo result with two quantiles. Sets the study to match. The numbers count up through all arrays.
-  MonteCarloResult monte_carlo() {
-    study.analysis.kind = &kMonteCarloStudy;
-    asked_of<MonteCarloOptions>(study.analysis).quantiles = {0.05, 0.995};
-    MonteCarloResult result;
+  monte_carlo::Result monte_carlo() {
+    study.analysis.kind = &monte_carlo::kStudy;
+    asked_of<monte_carlo::Options>(study.analysis).quantiles = {0.05, 0.995};
+    monte_carlo::Result result;
     result.conf_level = 0.9;
     result.quantile_relative_error = 1.0 / 512.0;
-    result.levels = asked_of<MonteCarloOptions>(study.analysis).quantiles;
+    result.levels = asked_of<monte_carlo::Options>(study.analysis).quantiles;
     double next = 0.0;
     const auto fill = filler(next);
     for (auto* values :
@@ -138,8 +138,8 @@ class Example {
     for (auto* values : {&result.overall_quantiles_ci_low, &result.overall_quantiles_ci_high}) fill(*values, {2, 2});
     result.histogram_edges = {{2, 5}, {0.0, 1.0, 2.0, 4.0, 4.0, 1.0, 2.0, 3.0, 4.0, 5.0}};
     result.histogram_counts = {{2, 4}, {100, 200, 82, 0, 300, 0, 60, 6}};
-    asked_of<MonteCarloOptions>(study.analysis).judge = Judge::share;
-    asked_of<MonteCarloOptions>(study.analysis).share = 0.9973;
+    asked_of<monte_carlo::Options>(study.analysis).judge = Judge::share;
+    asked_of<monte_carlo::Options>(study.analysis).share = 0.9973;
     study.analysis.limits = {{0, 0.5}, {1, 0.25}};
     fill(result.share_magnitude, {2, kPoses});
     result.verdicts = verdicts();
@@ -160,20 +160,20 @@ class Example {
   }
 
   /// A Monte Carlo result of 200 machines that are judged by their yield. The second response has a limit.
-  MonteCarloResult machines() {
-    MonteCarloResult result = monte_carlo();
+  monte_carlo::Result machines() {
+    monte_carlo::Result result = monte_carlo();
     study.analysis.draws = Draws::per_machine;
-    MonteCarloOptions& asked = asked_of<MonteCarloOptions>(study.analysis);
+    monte_carlo::Options& asked = asked_of<monte_carlo::Options>(study.analysis);
     asked.judge = Judge::yield;
     asked.yield = 0.9;
     asked.share = 0.0;
     study.analysis.limits = {{1, 0.25}};
     result.share_magnitude = {};
-    MachineResult& found = result.machines.emplace();
+    monte_carlo::MachineResult& found = result.machines.emplace();
     found.conf_level = result.conf_level;
     double next = 2000.0;
     const auto fill = filler(next);
-    for (MachineValues* values : {&found.largest, &found.rms}) {
+    for (monte_carlo::MachineValues* values : {&found.largest, &found.rms}) {
       for (auto* list :
            {&values->mean, &values->mean_ci_low, &values->mean_ci_high, &values->std, &values->min, &values->max}) {
         fill(*list, {2});
@@ -186,7 +186,7 @@ class Example {
       values->histogram_counts = result.histogram_counts;
     }
     fill_effects(found.effects_on_largest, fill);
-    YieldResult& yield = found.yield.emplace();
+    monte_carlo::YieldResult& yield = found.yield.emplace();
     yield.conf_level = result.conf_level;
     yield.value = 0.75;
     yield.ci_low = 0.7;
@@ -225,7 +225,7 @@ class Example {
 
   /// Fills the main effects of two errors on two responses. fill(array, lengths): fills an array with numbers.
   template <class Fill>
-  static void fill_effects(MainEffects& effects, const Fill& fill) {
+  static void fill_effects(monte_carlo::MainEffects& effects, const Fill& fill) {
     for (auto* list : {&effects.s1, &effects.s1_ci_low, &effects.s1_ci_high}) fill(*list, {2, 2});
     for (auto* list : {&effects.mean, &effects.ci_low, &effects.ci_high}) fill(*list, {2, 2, kEffectBins});
   }
@@ -253,23 +253,23 @@ class Example {
                         .row = {}}}};
   }
 
-  using CouplingCurves = CouplingResult::Curves CouplingResult::*;
-  static constexpr CouplingCurves kCurves[] = {&CouplingResult::effect,          &CouplingResult::sum,
-                                               &CouplingResult::interaction,     &CouplingResult::worst_case,
-                                               &CouplingResult::root_sum_square, &CouplingResult::cancellation};
-  using CouplingSummary = CouplingResult::Summary<double> CouplingResult::*;
+  using CouplingCurves = coupling::Result::Curves coupling::Result::*;
+  static constexpr CouplingCurves kCurves[] = {&coupling::Result::effect,          &coupling::Result::sum,
+                                               &coupling::Result::interaction,     &coupling::Result::worst_case,
+                                               &coupling::Result::root_sum_square, &coupling::Result::cancellation};
+  using CouplingSummary = coupling::Result::Summary<double> coupling::Result::*;
   static constexpr CouplingSummary kSummaries[] = {
-      &CouplingResult::effect_max,          &CouplingResult::interaction_max, &CouplingResult::worst_case_max,
-      &CouplingResult::root_sum_square_max, &CouplingResult::opposed_share,   &CouplingResult::cancellation_max};
+      &coupling::Result::effect_max,          &coupling::Result::interaction_max, &coupling::Result::worst_case_max,
+      &coupling::Result::root_sum_square_max, &coupling::Result::opposed_share,   &coupling::Result::cancellation_max};
 
   /// A coupling result with two sizes and two sources. Sets the study to match. The numbers count up through all
   /// arrays.
-  CouplingResult coupling() {
+  coupling::Result coupling() {
     Analysis& analysis = study.analysis;
-    analysis.kind = &kCouplingStudy;
+    analysis.kind = &coupling::kStudy;
     analysis.factors = {FactorIndex(0), FactorIndex(2)};
-    analysis.asked = CouplingStudy{{1e-4, 2e-4}, {}, {}, {{"D", {FactorIndex(2)}}, {"E", {FactorIndex(0)}}}};
-    CouplingResult result;
+    analysis.asked = coupling::Options{{1e-4, 2e-4}, {}, {}, {{"D", {FactorIndex(2)}}, {"E", {FactorIndex(0)}}}};
+    coupling::Result result;
     result.size_names = {"0.1 mm", "0.2 mm"};
     result.sources = {"D", "E"};
     result.subsets = {"D", "E", "D+E"};
@@ -281,13 +281,13 @@ class Example {
       for (double& value : values) value = next += 0.125;
       values.all().back() = std::numeric_limits<double>::quiet_NaN();
     };
-    const CouplingResult::Curves::Lengths all{2, 2, 3, kPoses};
-    const CouplingResult::Summary<double>::Lengths over_poses{2, 2, 3};
+    const coupling::Result::Curves::Lengths all{2, 2, 3, kPoses};
+    const coupling::Result::Summary<double>::Lengths over_poses{2, 2, 3};
     for (const CouplingCurves member : kCurves) fill(result.*member, all);
     for (const CouplingSummary member : kSummaries) fill(result.*member, over_poses);
-    result.count = CouplingResult::Summary<std::uint64_t>(over_poses);
+    result.count = coupling::Result::Summary<std::uint64_t>(over_poses);
     for (auto* places : {&result.effect_max_pose, &result.cancellation_max_pose, &result.worst_case_max_pose}) {
-      *places = CouplingResult::Summary<std::int64_t>(over_poses);
+      *places = coupling::Result::Summary<std::int64_t>(over_poses);
     }
     result.worst_case_signs = decltype(result.worst_case_signs)({2, 2, 3, 2});
     for (std::size_t cell = 0; cell < 12; ++cell) {
@@ -318,8 +318,8 @@ class Example {
   }
 
   /// A comparison of two fidelities for two responses and two errors.
-  static FidelityResult fidelity(std::vector<std::string> fidelities) {
-    FidelityResult fidelity;
+  static sensitivity::FidelityResult fidelity(std::vector<std::string> fidelities) {
+    sensitivity::FidelityResult fidelity;
     fidelity.fidelities = std::move(fidelities);
     fidelity.linearity = 0.02;
     fidelity.global = {{2, 2}, {1.0, 2.0, 3.0, 4.0}};
@@ -332,11 +332,11 @@ class Example {
   }
 
   /// An identification of two errors at two groups of sizes. Sets the study to match.
-  IdentificationResult identification() {
-    study.analysis.kind = &kIdentificationStudy;
-    asked_of<IdentificationOptions>(study.analysis).groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
-    IdentificationResult result;
-    result.sizes = asked_of<IdentificationOptions>(study.analysis).groups;
+  identification::Result identification() {
+    study.analysis.kind = &identification::kStudy;
+    asked_of<identification::Options>(study.analysis).groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
+    identification::Result result;
+    result.sizes = asked_of<identification::Options>(study.analysis).groups;
     result.poses = kPoses;
     result.rounding = 1.5e-14;
     result.required_poses = 3;
@@ -355,16 +355,16 @@ class Example {
   }
 
   /// An evaluation of two cases with all details. Sets the study to match.
-  Evaluation cases() {
-    study.analysis.kind = &kEvaluateStudy;
-    std::vector<ErrorCase>& cases = asked_of<CaseOptions>(study.analysis).cases;
+  evaluate::Evaluation cases() {
+    study.analysis.kind = &evaluate::kStudy;
+    std::vector<evaluate::ErrorCase>& cases = asked_of<evaluate::CaseOptions>(study.analysis).cases;
     cases = {{"fine", {1e-3, 2e-3, 3e-3}}, {"coarse", {4e-3, 5e-3, 6e-3}}};
-    return evaluation_of_cases(solves(2), cases, study.model(), NotConverged::include);
+    return evaluate::evaluation_of_cases(solves(2), cases, study.model(), NotConverged::include);
   }
 
-  Evaluation evaluation(Pairing pairing) const {
-    return poesy::evaluation(solves(pairing == Pairing::row_by_row ? 1 : kSamples), errors(pairing), pairing,
-                             study.model());
+  evaluate::Evaluation evaluation(Pairing pairing) const {
+    return evaluate::evaluation(solves(pairing == Pairing::row_by_row ? 1 : kSamples), errors(pairing), pairing,
+                                study.model());
   }
 
   /// Solves with made-up numbers that count up through each array.
@@ -397,10 +397,10 @@ class Example {
     poesy::write_result(path, study, poses, sensitivity(), facts);
   }
   /// A Sobol' result of two errors, each a group of its own, with their interaction and two vectors.
-  SobolResult sobol() {
-    study.analysis.kind = &kSobolStudy;
-    asked_of<SobolOptions>(study.analysis).second_order = true;
-    SobolResult result;
+  sobol::Result sobol() {
+    study.analysis.kind = &sobol::kStudy;
+    asked_of<sobol::Options>(study.analysis).second_order = true;
+    sobol::Result result;
     for (const FactorIndex factor : study.analysis.factors) {
       result.group_names.push_back(study.model().factors[factor.value].name);
     }
@@ -435,14 +435,14 @@ class Example {
     return result;
   }
   /// A certified allocation of three parts with two stages. Only the second response has a limit.
-  AllocationResult allocation() {
-    study.analysis.kind = &kAllocationStudy;
-    study.analysis.asked = AllocationOptions();
+  allocation::Result allocation() {
+    study.analysis.kind = &allocation::kStudy;
+    study.analysis.asked = allocation::Options();
     study.analysis.draws = Draws::per_machine;
     study.analysis.limits = {{1, 3e-5}};
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     using Names = std::vector<std::string>;
-    AllocationResult result;
+    allocation::Result result;
     result.part_names = {"bars", "hinge", "plate"};
     result.part_members = {{3}, Names{"delta_1 delta_2", "epsilon_1", "delta_3"}};
     result.part_unit = {{3}, Names{"m", "rad", "m"}};
@@ -496,35 +496,35 @@ class Example {
     result.failures = {{0, PoseIndex(2), {SampleIndex(7), SolveStatus::singular}}};
     return result;
   }
-  void write_allocation(const std::string& path, const AllocationResult& result) const {
+  void write_allocation(const std::string& path, const allocation::Result& result) const {
     poesy::write_result(path, study, poses, result, facts);
   }
   void write_monte_carlo(const std::string& path) {
-    const MonteCarloResult result = monte_carlo();
+    const monte_carlo::Result result = monte_carlo();
     poesy::write_result(path, study, poses, result, facts);
   }
   void write_machines(const std::string& path) {
-    const MonteCarloResult result = machines();
+    const monte_carlo::Result result = machines();
     poesy::write_result(path, study, poses, result, facts);
   }
   void write_sobol(const std::string& path) {
-    const SobolResult result = sobol();
+    const sobol::Result result = sobol();
     poesy::write_result(path, study, poses, result, facts);
   }
   void write_coupling(const std::string& path) {
-    const CouplingResult result = coupling();
+    const coupling::Result result = coupling();
     poesy::write_result(path, study, poses, result, facts);
   }
   void write_cases(const std::string& path) {
-    const Evaluation result = cases();
+    const evaluate::Evaluation result = cases();
     poesy::write_result(path, study, poses, result, facts);
   }
   void write_identification(const std::string& path) {
-    const IdentificationResult result = identification();
+    const identification::Result result = identification();
     poesy::write_result(path, study, poses, result, facts);
   }
   void write_evaluation(const std::string& path, Pairing pairing) const {
-    poesy::write_evaluation(path, study, poses, errors(pairing).factors, evaluation(pairing), facts);
+    evaluate::write_evaluation(path, study, poses, errors(pairing).factors, evaluation(pairing), facts);
   }
 
   Study study;

@@ -23,7 +23,7 @@ std::vector<double> first_pieces(const std::vector<WorkOutlook>& all) {
 }
 
 TEST(Outlook, CountsTheSolvesOfASensitivityStudy) {
-  const Prepared prepared(study_of(&kSensitivityStudy, 400));
+  const Prepared prepared(study_of(&sensitivity::kStudy, 400));
   const Outlook expected = outlook(prepared.study, *prepared.model, prepared.plan.poses());
   EXPECT_EQ(expected.solves, "2 errors x 3 poses x 400 samples = 2400 solves, fewer where series replace them");
   EXPECT_EQ(expected.least, 1.0);
@@ -34,7 +34,7 @@ TEST(Outlook, CountsTheSolvesOfASensitivityStudy) {
 }
 
 TEST(Outlook, NamesBothEndsOfAdaptiveSamples) {
-  Study study = study_of(&kMonteCarloStudy, 4000);
+  Study study = study_of(&monte_carlo::kStudy, 4000);
   study.analysis.adaptive = AdaptiveSamples{1000, 0.05};
   const Prepared prepared(study);
   const Outlook expected = outlook(study, *prepared.model, prepared.plan.poses());
@@ -47,7 +47,7 @@ TEST(Outlook, NamesBothEndsOfAdaptiveSamples) {
 /// Merging is tried too: all samples of a small study, or whole units of a larger one.
 TEST(Outlook, TriesTheMergingOfAStudyThatDrawsPerPose) {
   for (const auto& [samples, tried] : {std::pair<std::size_t, std::size_t>{20, 20}, {2500, 2000}, {40'000, 8000}}) {
-    const Prepared prepared(study_of(&kMonteCarloStudy, samples));
+    const Prepared prepared(study_of(&monte_carlo::kStudy, samples));
     const Outlook expected = outlook(prepared.study, *prepared.model, prepared.plan.poses());
     const double share = static_cast<double>(tried) / static_cast<double>(samples);
     EXPECT_EQ(first_pieces(expected.merging), std::vector{share}) << samples;
@@ -60,10 +60,10 @@ TEST(Outlook, TriesTheMergingOfAStudyThatDrawsPerPose) {
 /// and, for the parts over all poses, as a whole.
 TEST(Outlook, TriesUnitsOfMachines) {
   for (const auto& [machines, tried] : {std::pair<std::size_t, std::size_t>{30, 30}, {4000, 1000}}) {
-    Study study = study_of(&kMonteCarloStudy, machines);
+    Study study = study_of(&monte_carlo::kStudy, machines);
     study.analysis.draws = Draws::per_machine;
     study.analysis.limits = {{0, 1e-3}};
-    asked_of<MonteCarloOptions>(study.analysis).judge = Judge::yield;
+    asked_of<monte_carlo::Options>(study.analysis).judge = Judge::yield;
     const Prepared prepared(study);
     const Outlook expected = outlook(study, *prepared.model, prepared.plan.poses());
     const double share = static_cast<double>(tried) / static_cast<double>(machines);
@@ -85,10 +85,10 @@ TEST(Outlook, AddsUpSeconds) {
 }
 
 TEST(Outlook, CountsTheTrialsOfMachinesOfAStudyOfTolerances) {
-  Study study = study_of(&kAllocationStudy, 4000);
+  Study study = study_of(&allocation::kStudy, 4000);
   study.analysis.draws = Draws::per_machine;
   study.analysis.limits = {{0, 1e-3}};
-  asked_of<AllocationOptions>(study.analysis).parts = {{.name = "both", .factors = study.analysis.factors}};
+  asked_of<allocation::Options>(study.analysis).parts = {{.name = "both", .factors = study.analysis.factors}};
   const Prepared prepared(study);
   const Outlook expected = outlook(study, *prepared.model, prepared.plan.poses());
   EXPECT_EQ(expected.solves, "about 5 x 3 poses x 4000 machines and 7e+03 for the effects of 2 errors: 6.7e+04 solves");
@@ -102,9 +102,9 @@ TEST(Outlook, CountsTheTrialsOfMachinesOfAStudyOfTolerances) {
 }
 
 TEST(Outlook, TriesAFewPosesOfATable) {
-  Study study = study_of(&kEvaluateStudy, 0);
-  asked_of<CaseOptions>(study.analysis).cases = {{"one", {1e-3, 0.0, 0.0}}};
-  const Prepared prepared(study_of(&kSensitivityStudy, 10));
+  Study study = study_of(&evaluate::kStudy, 0);
+  asked_of<evaluate::CaseOptions>(study.analysis).cases = {{"one", {1e-3, 0.0, 0.0}}};
+  const Prepared prepared(study_of(&sensitivity::kStudy, 10));
   const Outlook expected = outlook(study, *prepared.model, prepared.plan.poses());
   EXPECT_EQ(expected.solves, "1 cases x 3 poses = 3 solves");
   EXPECT_EQ(first_pieces(expected.shared), std::vector{1.0});

@@ -185,8 +185,8 @@ void expect_bars(const Json& page, const Json& figure, const char* member, const
 }
 
 /// An identification of two errors at two sizes and four poses.
-IdentificationResult identified() {
-  IdentificationResult found;
+identification::Result identified() {
+  identification::Result found;
   found.sizes = {{"small", 1e-4, 1e-3}, {"large", 1e-3, 1e-2}};
   found.poses = 4;
   found.rounding = 1e-14;
@@ -254,7 +254,7 @@ TEST_F(HtmlReport, OfAnIdentificationIsWhole) {
 TEST_F(HtmlReport, OfAnIdentificationHasNoBarsThatAreAllOrNothing) {
   ReportedResult result = sensitivity();
   result.stored.kind = "identification";
-  IdentificationResult found = identified();
+  identification::Result found = identified();
   found.coupled_below = {{2, 2}, {4, 4, 0, 4}};
   found.coupled_reduced = {{2, 2}, {0, 0, 4, 0}};
   result.stored.found = found;
@@ -273,7 +273,7 @@ TEST_F(HtmlReport, OfATrajectoryHasCurvesOverTime) {
 
 TEST_F(HtmlReport, ShowsTheNumbersOfTheResult) {
   const ReportedResult result = sensitivity();
-  const SensitivityResult& found = sensitivity_of(result.stored);
+  const sensitivity::Result& found = sensitivity::sensitivity_of(result.stored);
   const Json page = data(report(result));
   const Json& ranking = page["figures"]["ranking"]["quantities"][0];
   const Json& heat = page["figures"]["heat"];
@@ -335,7 +335,7 @@ TEST_F(HtmlReport, DrawsSobolIndicesWithTheirIntervals) {
   const Json page = data(html);
   const Json& figure = page["figures"]["sobol"];
   EXPECT_EQ(figure["series"], Json({"ST, with interactions", "S1, alone"}));
-  const auto& [conf_level, S1, ST] = sobol_of(result.stored).aggregated;
+  const auto& [conf_level, S1, ST] = sobol::sobol_of(result.stored).aggregated;
   expect_bars(page, figure, "value", result.stored, {ST.value.all(), S1.value.all()});
   expect_bars(page, figure, "low", result.stored, {ST.ci_low.all(), S1.ci_low.all()});
   expect_bars(page, figure, "high", result.stored, {ST.ci_high.all(), S1.ci_high.all()});
@@ -345,7 +345,7 @@ TEST_F(HtmlReport, DrawsSobolIndicesWithTheirIntervals) {
 TEST_F(HtmlReport, DrawsShapleyEffectsWithTheirIntervals) {
   example.write_sobol(path);
   ReportedResult result = stored();
-  SobolResult found = sobol_of(result.stored);
+  sobol::Result found = sobol::sobol_of(result.stored);
   found.Sh.value = {{2, 2}, {0.25, 0.75, 0.625, 0.375}};
   found.Sh.ci_low = {{2, 2}, {0.125, 0.5, 0.5, std::nan("")}};
   found.Sh.ci_high = {{2, 2}, {0.375, 1.0, 0.75, std::nan("")}};
@@ -362,7 +362,7 @@ TEST_F(HtmlReport, DrawsShapleyEffectsWithTheirIntervals) {
 }
 
 /// Gives every response to every error the same values at the poses.
-void fill_poses(SensitivityResult::Cells<double>& cells, const std::vector<double>& at_poses) {
+void fill_poses(sensitivity::Result::Cells<double>& cells, const std::vector<double>& at_poses) {
   for (const std::size_t r : {0U, 1U}) {
     for (const std::size_t p : {0U, 1U}) std::ranges::copy(at_poses, cells.row(r, p).begin());
   }
@@ -372,8 +372,8 @@ TEST_F(HtmlReport, PutsTheMostImportantErrorFirst) {
   ReportedResult result = sensitivity();
   StoredResult& stored = result.stored;
   stored.factor_sigma = {1.0, 1.0};
-  SensitivityResult& found = sensitivity_in(stored);
-  found.global = found.global_corrected = SensitivityResult::Indices({2, 2}, {0.1, 1.0, 0.1, 1.0});
+  sensitivity::Result& found = sensitivity_in(stored);
+  found.global = found.global_corrected = sensitivity::Result::Indices({2, 2}, {0.1, 1.0, 0.1, 1.0});
   fill_poses(found.local, {1.0, 1.0, 1.0, 5.0});  // the last is the worst, 2.5 times the mean
   const std::string html = report(result);
   const Json page = data(html);
@@ -457,7 +457,7 @@ TEST_F(HtmlReport, SaysWhichErrorsMakeTheMeanSquare) {
   ReportedResult result = sensitivity();
   StoredResult& stored = result.stored;
   stored.factor_sigma = {1.0, 1.0};
-  SensitivityResult& found = sensitivity_in(stored);
+  sensitivity::Result& found = sensitivity_in(stored);
   found.global = {{2, 2}, {5.0, 4.0, 5.0, 4.0}};
   std::ranges::fill(found.background, 0.0);
   std::ranges::fill(found.std, 0.0);
@@ -476,11 +476,11 @@ TEST_F(HtmlReport, SaysWhichErrorsMakeTheMeanSquare) {
 TEST_F(HtmlReport, CountsWhatTheSecondFidelityDidNotSolve) {
   ReportedResult result = sensitivity();
   StoredResult& stored = result.stored;
-  FidelityResult& compared = sensitivity_in(stored).fidelity.emplace();
+  sensitivity::FidelityResult& compared = sensitivity_in(stored).fidelity.emplace();
   compared.fidelities = {"one", "two"};
   for (auto* values :
        {&compared.global, &compared.discrepancy, &compared.relative_discrepancy, &compared.nonlinearity}) {
-    *values = FidelityResult::Indices({2, 2});
+    *values = sensitivity::FidelityResult::Indices({2, 2});
   }
   compared.linear = {{2}, {1, 1}};
   compared.not_converged = {{2, 4}, {0, 0, 0, 0, 0, 7, 0, 0}};
@@ -527,7 +527,7 @@ TEST_F(HtmlReport, OfCoupledSourcesOpensAtTheLastSize) {
   example.write_coupling(path);
   const ReportedResult result = stored();
   const std::string label = data(report(result))["figures"]["sources"]["panels"][0]["label"];
-  EXPECT_TRUE(label.ends_with(" at " + coupling_of(result.stored).size_names.back())) << label;
+  EXPECT_TRUE(label.ends_with(" at " + coupling::coupling_of(result.stored).size_names.back())) << label;
 }
 
 TEST_F(HtmlReport, HoldsTheHistoryOfItsIndices) {
@@ -593,7 +593,7 @@ TEST_F(HtmlReport, HasNoSectionOfWarningsWithoutAny) {
   StoredResult& stored = result.stored;
   stored.git_commit = "abc";
   stored.condition = {1.0, 1.0, 1.0, 1.0};
-  SensitivityResult& found = sensitivity_in(stored);
+  sensitivity::Result& found = sensitivity_in(stored);
   std::ranges::fill(found.global, 1.0);
   found.global_corrected = found.global_corrected_ci_low = found.global_corrected_ci_high = found.global;
   for (SolveCounts& solves : found.solves) solves.by_status = {100, 0, 0, 0, 0};
@@ -605,11 +605,11 @@ TEST_F(HtmlReport, ThinsPosesOfALargeResultAndSaysSo) {
   constexpr std::size_t kPoses = 400'000;
   ReportedResult result = sensitivity();
   StoredResult& stored = result.stored;
-  SensitivityResult& found = sensitivity_in(stored);
+  sensitivity::Result& found = sensitivity_in(stored);
   for (auto* values : {&found.local, &found.local_ci_low, &found.local_ci_high, &found.mean, &found.std}) {
-    *values = SensitivityResult::Cells<double>({2, 2, kPoses}, 1.0);
+    *values = sensitivity::Result::Cells<double>({2, 2, kPoses}, 1.0);
   }
-  found.count = SensitivityResult::Cells<std::uint64_t>({2, 2, kPoses}, 1);
+  found.count = sensitivity::Result::Cells<std::uint64_t>({2, 2, kPoses}, 1);
   found.background = Array<double, axis::Response, axis::Pose>({2, kPoses});
   found.solves = Array<SolveCounts, axis::Factor, axis::Pose>({2, kPoses});
   stored.poses = PoseSet(3, std::vector<double>(3 * kPoses, 0.5));
@@ -640,8 +640,9 @@ TEST_F(HtmlReport, OfTwoResultsShowsWhatDiffers) {
   const double scale = a.stored.factor_sigma[0] / display(a.stored.responses[0]).si;
   const std::vector<std::string> responses = page["figures"]["side-by-side"]["choices"][0]["options"];
   const std::size_t r = responses[0] == a.stored.responses[0].name ? 0 : 1;
-  EXPECT_FLOAT_EQ(effects[r], static_cast<float>(sensitivity_of(a.stored).global_corrected(0, 0) * scale));
-  EXPECT_FLOAT_EQ(effects[2 + r], static_cast<float>(sensitivity_of(b.stored).global_corrected(0, 0) * scale));
+  EXPECT_FLOAT_EQ(effects[r], static_cast<float>(sensitivity::sensitivity_of(a.stored).global_corrected(0, 0) * scale));
+  EXPECT_FLOAT_EQ(effects[2 + r],
+                  static_cast<float>(sensitivity::sensitivity_of(b.stored).global_corrected(0, 0) * scale));
   EXPECT_NE(html.find("Only in B: another."), std::string::npos);
   for (const Json& layer : page["figures"]["heat"]["layers"]) EXPECT_TRUE(layer["signed"]);
 }
@@ -681,7 +682,7 @@ TEST_F(HtmlReport, OfTwoResultsSaysFirstHowTheStudiesDiffer) {
 
 TEST_F(HtmlReport, OfTwoResultsHasTheTotals) {
   ReportedResult a = sensitivity();
-  SensitivityResult& found = sensitivity_in(a.stored);
+  sensitivity::Result& found = sensitivity_in(a.stored);
   std::ranges::fill(found.global, 1.0);  // every error is known to have an effect
   std::ranges::fill(found.count, 1000);
   std::ranges::fill(found.background, 0.0);

@@ -22,7 +22,7 @@ class CasesFile : public testing::Test {
 
   test::TempFolder folder_;
   test::Example example_;
-  Evaluation result_;
+  evaluate::Evaluation result_;
   std::string path_;
 };
 
@@ -40,7 +40,7 @@ TEST_F(CasesFile, KeepsSolvesCaseByCase) {
 TEST_F(CasesFile, IsReadBackAsItWas) {
   const StoredResult stored = read_result(path_);
   EXPECT_EQ(stored.kind, "evaluate");
-  const Evaluation& found = evaluation_of(stored);
+  const evaluate::Evaluation& found = evaluate::evaluation_of(stored);
   EXPECT_EQ(found.cases, (std::vector<std::string>{"fine", "coarse"}));
   EXPECT_EQ(found.solves.response, result_.solves.response);
   EXPECT_EQ(found.solves.detail, result_.solves.detail);
@@ -92,22 +92,22 @@ TEST_F(CasesFile, IsExportedWithItsNames) {
 
 /// Files of version 0.2.0 have no extremes.
 TEST_F(CasesFile, OfVersion020GetsItsExtremesFromTheSolves) {
-  Evaluation older = result_;
+  evaluate::Evaluation older = result_;
   older.extreme = {};
   const std::string path = folder_.file("older.h5");
   write_result(path, example_.study, example_.poses, older, example_.facts);
   ASSERT_FALSE(h5::File::open(path).exists("/evaluate/extreme"));
   const StoredResult stored = read_result(path);
-  EXPECT_EQ(evaluation_of(stored).extreme, result_.extreme);
-  EXPECT_EQ(evaluation_of(stored).mean, result_.mean);
-  EXPECT_EQ(evaluation_of(stored).count, result_.count);
+  EXPECT_EQ(evaluate::evaluation_of(stored).extreme, result_.extreme);
+  EXPECT_EQ(evaluate::evaluation_of(stored).mean, result_.mean);
+  EXPECT_EQ(evaluate::evaluation_of(stored).count, result_.count);
 }
 
 class IdentificationFile : public testing::Test {
  protected:
   IdentificationFile() : path_(folder_.file("identification.h5")) {}
 
-  StoredResult stored(const IdentificationResult& result) {
+  StoredResult stored(const identification::Result& result) {
     write_result(path_, example_.study, example_.poses, result, example_.facts);
     return read_result(path_);
   }
@@ -118,9 +118,9 @@ class IdentificationFile : public testing::Test {
 };
 
 TEST_F(IdentificationFile, IsReadBackAsItWas) {
-  const IdentificationResult written = example_.identification();
+  const identification::Result written = example_.identification();
   const StoredResult read = stored(written);
-  const IdentificationResult& found = identification_of(read);
+  const identification::Result& found = identification::identification_of(read);
   EXPECT_EQ(read.kind, "identification");
   EXPECT_EQ(found.sizes[1].name, "small");
   EXPECT_EQ(found.sizes[1].angular, 4e-4);
@@ -144,9 +144,9 @@ TEST_F(IdentificationFile, IsReadBackAsItWas) {
 }
 
 TEST_F(IdentificationFile, MayHaveNoCouplings) {
-  IdentificationResult none = example_.identification();
+  identification::Result none = example_.identification();
   none.couplings.clear();
-  EXPECT_TRUE(identification_of(stored(none)).couplings.empty());
+  EXPECT_TRUE(identification::identification_of(stored(none)).couplings.empty());
 }
 
 TEST_F(IdentificationFile, IsExportedGroupByGroup) {

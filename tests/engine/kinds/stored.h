@@ -19,21 +19,21 @@ Found& found_in(StoredResult& result) {
   return std::any_cast<Found&>(result.found);
 }
 
-inline SensitivityResult& sensitivity_in(StoredResult& result) { return found_in<SensitivityResult>(result); }
-inline MonteCarloResult& monte_carlo_in(StoredResult& result) { return found_in<MonteCarloResult>(result); }
-inline CouplingResult& coupling_in(StoredResult& result) { return found_in<CouplingResult>(result); }
+inline sensitivity::Result& sensitivity_in(StoredResult& result) { return found_in<sensitivity::Result>(result); }
+inline monte_carlo::Result& monte_carlo_in(StoredResult& result) { return found_in<monte_carlo::Result>(result); }
+inline coupling::Result& coupling_in(StoredResult& result) { return found_in<coupling::Result>(result); }
 
 /// Sets the global indices [responses x errors] of a sensitivity result, with intervals of zero width and no change at
 /// a tenth of the sizes. Precondition: the result has its errors and responses.
 inline void set_indices(StoredResult& result, const std::vector<double>& indices) {
-  SensitivityResult& found = sensitivity_in(result);
+  sensitivity::Result& found = sensitivity_in(result);
   const std::array lengths{result.responses.size(), result.factors.size()};
   for (auto* values : {&found.global, &found.global_ci_low, &found.global_ci_high, &found.global_corrected,
                        &found.global_corrected_ci_low, &found.global_corrected_ci_high}) {
     *values = {lengths, indices};
   }
   found.rounding = Array<double, axis::Response>({lengths[0]});
-  found.index_change = SensitivityResult::Indices(lengths);
+  found.index_change = sensitivity::Result::Indices(lengths);
 }
 
 /// The tables of a result. ranked_by: the response that ranks the errors.

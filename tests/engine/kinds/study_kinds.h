@@ -56,7 +56,7 @@ inline void append(Bits& bits, const std::vector<Failure>& failures) {
   }
 }
 
-inline Bits bits_of(const SensitivityResult& result) {
+inline Bits bits_of(const sensitivity::Result& result) {
   Bits bits;
   for (const auto values :
        {result.local.all(), result.local_ci_low.all(), result.global.all(), result.global_ci_high.all(),
@@ -75,7 +75,7 @@ inline Bits bits_of(const SensitivityResult& result) {
   return bits;
 }
 
-inline Bits bits_of(const MonteCarloResult& result) {
+inline Bits bits_of(const monte_carlo::Result& result) {
   Bits bits;
   for (const std::span<const double> values : std::initializer_list<std::span<const double>>{
            result.mean, result.mean_ci_low, result.std, result.min, result.max, result.quantiles, result.overall_mean,
@@ -97,7 +97,7 @@ inline Bits bits_of(const EvaluationResult& result) {
   return bits;
 }
 
-inline Bits bits_of(const IdentificationResult& result) {
+inline Bits bits_of(const identification::Result& result) {
   Bits bits(elements(result.coupled_below));
   append(bits, elements(result.single_max));
   bits.insert(bits.end(), result.coupled_reduced.begin(), result.coupled_reduced.end());
@@ -114,14 +114,15 @@ inline std::optional<Bits> run(const Prepared& prepared, const RunOptions& optio
   };
   const auto bits = [](const auto& result) { return result ? std::optional(bits_of(*result)) : std::nullopt; };
   const KindOfStudy kind = prepared.study.analysis.kind;
-  if (kind == &kSensitivityStudy) return bits(run_sensitivity(prepared.plan, *prepared.model, 0.95, options));
-  if (kind == &kMonteCarloStudy) {
-    return bits(run_monte_carlo(prepared.plan, *prepared.model, prepared.study.analysis, options));
+  if (kind == &sensitivity::kStudy)
+    return bits(sensitivity::run_sensitivity(prepared.plan, *prepared.model, 0.95, options));
+  if (kind == &monte_carlo::kStudy) {
+    return bits(monte_carlo::run_monte_carlo(prepared.plan, *prepared.model, prepared.study.analysis, options));
   }
-  if (kind == &kIdentificationStudy) {
+  if (kind == &identification::kStudy) {
     Analysis analysis = prepared.study.analysis;
-    analysis.asked = IdentificationOptions{{{"one", 1e-3, 1e-3}, {"two", 2e-3, 2e-3}}, 0.9};
-    return bits(identify(analysis, prepared.model->description(), table));
+    analysis.asked = identification::Options{{{"one", 1e-3, 1e-3}, {"two", 2e-3, 2e-3}}, 0.9};
+    return bits(identification::identify(analysis, prepared.model->description(), table));
   }
   ErrorTable errors{{FactorIndex(0), FactorIndex(1)}, {}, 700};
   for (std::size_t k = 0; k < 2 * errors.rows; ++k) errors.values.push_back(1e-6 * static_cast<double>(k));

@@ -36,7 +36,7 @@ errors = { delta_1 = "-0.5 mm", linear = "1 mm", deforming = { linear = "2 mm", 
 [[analysis.cases]]
 errors = { epsilon_1 = "1 deg" }
 )");
-  const std::vector<ErrorCase>& cases = asked_of<CaseOptions>(study.analysis).cases;
+  const std::vector<evaluate::ErrorCase>& cases = asked_of<evaluate::CaseOptions>(study.analysis).cases;
   ASSERT_EQ(cases.size(), 3u);
   EXPECT_EQ(cases[0].name, "all");
   EXPECT_EQ(cases[0].errors, (std::vector<double>{1e-3, kDegree, 1e-3}));
@@ -50,14 +50,15 @@ TEST(StudyOfCases, LetsANarrowerSetWinWhateverItsPlaceInTheModel) {
 [[analysis.cases]]
 errors = { all = { linear = "1 mm", angular = "1 deg" }, deforming = { linear = "2 mm" } }
 )");
-  EXPECT_EQ(asked_of<CaseOptions>(study.analysis).cases[0].errors, (std::vector<double>{2e-3, kDegree, 1e-3}));
+  EXPECT_EQ(asked_of<evaluate::CaseOptions>(study.analysis).cases[0].errors,
+            (std::vector<double>{2e-3, kDegree, 1e-3}));
   Catalog wide_last = test::fake_catalog();
   std::swap(wide_last.front().description.factor_sets[0], wide_last.front().description.factor_sets[1]);
   const test::TempFolder folder;
   const std::string path = folder.write(
       "study.toml", with_analysis("kind = \"evaluate\"\ncases = [{ errors = { all = { linear = \"1 mm\" }, deforming = "
                                   "{ linear = \"2 mm\" } } }]\n"));
-  EXPECT_EQ(asked_of<CaseOptions>(read_study(path, wide_last, StudyUse::run).analysis).cases[0].errors,
+  EXPECT_EQ(asked_of<evaluate::CaseOptions>(read_study(path, wide_last, StudyUse::run).analysis).cases[0].errors,
             (std::vector<double>{2e-3, 0.0, 1e-3}));
 }
 
@@ -75,7 +76,7 @@ TEST(StudyOfCases, RefusesSetsThatOverlap) {
 
 TEST(StudyOfCases, NeedsNoCasesForATableOfErrors) {
   const Study study = study_of("kind = \"evaluate\"\n", StudyUse::evaluate);
-  EXPECT_TRUE(asked_of<CaseOptions>(study.analysis).cases.empty());
+  EXPECT_TRUE(asked_of<evaluate::CaseOptions>(study.analysis).cases.empty());
 }
 
 TEST(StudyOfIdentification, TakesGroupsAndShare) {
@@ -83,19 +84,19 @@ TEST(StudyOfIdentification, TakesGroupsAndShare) {
 pose_share = 0.9
 groups = [{ name = "large", linear = "5 mm", angular = "0.005 rad" }, { linear = "1 mm", angular = "1 deg" }]
 )");
-  ASSERT_EQ(asked_of<IdentificationOptions>(study.analysis).groups.size(), 2u);
-  EXPECT_EQ(asked_of<IdentificationOptions>(study.analysis).groups[0].name, "large");
-  EXPECT_EQ(asked_of<IdentificationOptions>(study.analysis).groups[0].angular, 0.005);
-  EXPECT_EQ(asked_of<IdentificationOptions>(study.analysis).groups[1].name, "group 2");
-  EXPECT_EQ(asked_of<IdentificationOptions>(study.analysis).pose_share, 0.9);
+  ASSERT_EQ(asked_of<identification::Options>(study.analysis).groups.size(), 2u);
+  EXPECT_EQ(asked_of<identification::Options>(study.analysis).groups[0].name, "large");
+  EXPECT_EQ(asked_of<identification::Options>(study.analysis).groups[0].angular, 0.005);
+  EXPECT_EQ(asked_of<identification::Options>(study.analysis).groups[1].name, "group 2");
+  EXPECT_EQ(asked_of<identification::Options>(study.analysis).pose_share, 0.9);
   EXPECT_EQ(study.analysis.factors.size(), 3u);
 }
 
 TEST(StudyOfIdentification, HasOneGroupUnlessToldOtherwise) {
   const Study study = study_of("kind = \"identification\"\n");
-  ASSERT_EQ(asked_of<IdentificationOptions>(study.analysis).groups.size(), 1u);
-  EXPECT_EQ(asked_of<IdentificationOptions>(study.analysis).groups[0].linear, 1e-3);
-  EXPECT_DOUBLE_EQ(asked_of<IdentificationOptions>(study.analysis).groups[0].angular, kDegree);
+  ASSERT_EQ(asked_of<identification::Options>(study.analysis).groups.size(), 1u);
+  EXPECT_EQ(asked_of<identification::Options>(study.analysis).groups[0].linear, 1e-3);
+  EXPECT_DOUBLE_EQ(asked_of<identification::Options>(study.analysis).groups[0].angular, kDegree);
 }
 
 TEST(StudyOfIdentification, NeedsAModelInWhichSomethingDeforms) {
@@ -109,9 +110,9 @@ TEST(StudyOfIdentification, NeedsAModelInWhichSomethingDeforms) {
 
 TEST(StudyOfMonteCarlo, TakesQuantilesAndVariesAll) {
   const Study usual = study_of("kind = \"monte-carlo\"\n");
-  EXPECT_EQ(asked_of<MonteCarloOptions>(usual.analysis).quantiles, (std::vector<double>{0.05, 0.5, 0.95}));
+  EXPECT_EQ(asked_of<monte_carlo::Options>(usual.analysis).quantiles, (std::vector<double>{0.05, 0.5, 0.95}));
   const Study study = study_of("kind = \"monte-carlo\"\nquantiles = [0.01, 0.99]\n");
-  EXPECT_EQ(asked_of<MonteCarloOptions>(study.analysis).quantiles, (std::vector<double>{0.01, 0.99}));
+  EXPECT_EQ(asked_of<monte_carlo::Options>(study.analysis).quantiles, (std::vector<double>{0.01, 0.99}));
   EXPECT_EQ(study.analysis.factors.size(), 3u);
 }
 
@@ -127,11 +128,11 @@ TEST(StudyOfMonteCarlo, SolvesSamplesAtEachPoseWhateverItsQuantiles) {
 
 TEST(StudyOfSensitivity, TakesAReference) {
   const Study study = study_of("reference = { factor = \"epsilon_1\", tolerance = \"2 deg\" }\n");
-  ASSERT_TRUE(asked_of<SensitivityOptions>(study.analysis).reference);
-  EXPECT_EQ(asked_of<SensitivityOptions>(study.analysis).reference->factor, FactorIndex(1));
-  EXPECT_DOUBLE_EQ(asked_of<SensitivityOptions>(study.analysis).reference->tolerance, 2 * kDegree);
+  ASSERT_TRUE(asked_of<sensitivity::Options>(study.analysis).reference);
+  EXPECT_EQ(asked_of<sensitivity::Options>(study.analysis).reference->factor, FactorIndex(1));
+  EXPECT_DOUBLE_EQ(asked_of<sensitivity::Options>(study.analysis).reference->tolerance, 2 * kDegree);
   const Study usual = study_of("reference = { factor = \"delta_1\" }\n");
-  EXPECT_EQ(asked_of<SensitivityOptions>(usual.analysis).reference->tolerance, 1e-3);
+  EXPECT_EQ(asked_of<sensitivity::Options>(usual.analysis).reference->tolerance, 1e-3);
 }
 
 TEST(StudyOfAnyKind, KeepsFactorsAndSamplesOfAnother) {
@@ -144,7 +145,7 @@ TEST(StudyOfAnyKind, KeepsFactorsAndSamplesOfAnother) {
 TEST(StudyKinds, HaveNames) {
   EXPECT_EQ(names(study_kinds()), (std::vector<std::string_view>{"sensitivity", "identification", "evaluate",
                                                                  "monte-carlo", "sobol", "allocation", "coupling"}));
-  EXPECT_EQ(find(study_kinds(), "monte-carlo"), &kMonteCarloStudy);
+  EXPECT_EQ(find(study_kinds(), "monte-carlo"), &monte_carlo::kStudy);
   EXPECT_EQ(find(study_kinds(), "monte_carlo"), nullptr);
 }
 

@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 
 TEST(JsonTables, HaveEveryCellAsValueAndAsText) {
-  const StoredResult result = ranked_result();
+  const StoredResult result = sensitivity::ranked_result();
   const std::vector<Table> tables = result_tables(result, "x");
   const json all = json::parse(json_of(result, tally_of(result).total(), tables));
   ASSERT_EQ(all["tables"].size(), tables.size());
@@ -53,7 +53,7 @@ TEST(JsonTables, HaveWholeNumbersAsWholeNumbers) {
 }
 
 TEST(JsonTables, NameEachColumnOnce) {
-  for (const Table& table : result_tables(ranked_result(), "x")) {
+  for (const Table& table : result_tables(sensitivity::ranked_result(), "x")) {
     std::set<std::string> names;
     for (const Column& column : table.columns) {
       EXPECT_TRUE(names.insert(column.name).second) << column.name;
@@ -63,7 +63,7 @@ TEST(JsonTables, NameEachColumnOnce) {
 }
 
 TEST(JsonTables, SayWhatEachErrorAndResponseIs) {
-  StoredResult result = ranked_result();
+  StoredResult result = sensitivity::ranked_result();
   result.factors[1].description = "a bolt that is too long";
   const json all = json::parse(json_of(result, tally_of(result).total(), {}));
   ASSERT_EQ(all["errors"].size(), result.factors.size());
@@ -74,7 +74,7 @@ TEST(JsonTables, SayWhatEachErrorAndResponseIs) {
 }
 
 TEST(JsonTables, HaveTheSummary) {
-  StoredResult result = ranked_result();
+  StoredResult result = sensitivity::ranked_result();
   result.title = "not UTF-8: \xFF";
   const json all = json::parse(json_of(result, tally_of(result).total(), {}));
   EXPECT_EQ(all["kind"], "sensitivity");

@@ -193,12 +193,12 @@ TEST_F(Export, EvaluationHasARowForEachSolve) {
 TEST_F(Export, LabelsOfRowsComeBack) {
   ErrorTable errors = example_.errors(Pairing::every_pose_with_every_row);
   errors.labels = {"part", {"17", "Gehäuse", "19"}};
-  Evaluation found = example_.evaluation(Pairing::every_pose_with_every_row);
+  evaluate::Evaluation found = example_.evaluation(Pairing::every_pose_with_every_row);
   found.labels = errors.labels;
-  write_evaluation(folder_ / "l.h5", example_.study, example_.poses, errors.factors, found, example_.facts);
+  evaluate::write_evaluation(folder_ / "l.h5", example_.study, example_.poses, errors.factors, found, example_.facts);
   const StoredResult stored = read_result(folder_ / "l.h5");
-  EXPECT_EQ(evaluation_of(stored).labels.column, "part");
-  EXPECT_EQ(evaluation_of(stored).labels.names, errors.labels.names);
+  EXPECT_EQ(evaluate::evaluation_of(stored).labels.column, "part");
+  EXPECT_EQ(evaluate::evaluation_of(stored).labels.names, errors.labels.names);
   export_tables(stored, folder_.path());
   const auto solves = read_table(folder_ / "evaluate.csv");
   EXPECT_EQ(Cells(solves[0].begin(), solves[0].begin() + 4),
@@ -225,7 +225,7 @@ TEST_F(Export, ErrorsOfAnExportAreReadAgain) {
 }
 
 TEST_F(Export, WholeNumbersHaveAllTheirDigits) {
-  MonteCarloResult found = example_.monte_carlo();
+  monte_carlo::Result found = example_.monte_carlo();
   std::ranges::fill(found.overall_count, 100'000);
   write_result(folder_ / "m.h5", example_.study, example_.poses, found, example_.facts);
   export_tables(folder_ / "m.h5", folder_.path());

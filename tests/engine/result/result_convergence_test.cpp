@@ -45,7 +45,7 @@ class ConvergenceFile : public testing::Test {
 };
 
 TEST_F(ConvergenceFile, OfASensitivityResult) {
-  SensitivityResult result = example_.sensitivity();
+  sensitivity::Result result = example_.sensitivity();
   result.convergence = {.min = 1000,
                         .max = 2500,
                         .relative_error = 0.25,
@@ -61,7 +61,7 @@ TEST_F(ConvergenceFile, OfASensitivityResult) {
   const StoredResult stored = read_result(path_);
   ASSERT_TRUE(stored.convergence);
   expect_same(*stored.convergence, *result.convergence);
-  EXPECT_FALSE(sensitivity_of(stored).history);
+  EXPECT_FALSE(sensitivity::sensitivity_of(stored).history);
   EXPECT_FALSE(h5::File::open(path_).exists("/sensitivity/history"));
   EXPECT_NE(stored.study_text.find("samples.relative_error = 0.25\n"), std::string::npos) << stored.study_text;
 
@@ -76,7 +76,7 @@ TEST_F(ConvergenceFile, OfASensitivityResult) {
 }
 
 TEST_F(ConvergenceFile, OfAMonteCarloResult) {
-  MonteCarloResult result = example_.monte_carlo();
+  monte_carlo::Result result = example_.monte_carlo();
   result.convergence = {.min = 1000,
                         .max = 2500,
                         .relative_error = 0.25,

@@ -50,8 +50,8 @@ TEST(ResultFile, SensitivityReadsBackAsWritten) {
   const Example example;
   example.write_sensitivity(folder / "r.h5");
   const StoredResult stored = read_result(folder / "r.h5");
-  const SensitivityResult expected = example.sensitivity();
-  const SensitivityResult& found = sensitivity_of(stored);
+  const sensitivity::Result expected = example.sensitivity();
+  const sensitivity::Result& found = sensitivity::sensitivity_of(stored);
 
   EXPECT_EQ(stored.kind, "sensitivity");
   EXPECT_EQ(stored.title, example.study.title);
@@ -157,7 +157,7 @@ TEST_P(EvaluationFile, ReadsBackAsWritten) {
   example.write_evaluation(folder / "e.h5", GetParam());
   const StoredResult stored = read_result(folder / "e.h5");
   const EvaluationResult expected = example.evaluation(GetParam()).solves;
-  const Evaluation& evaluation = evaluation_of(stored);
+  const evaluate::Evaluation& evaluation = evaluate::evaluation_of(stored);
   const EvaluationResult& found = evaluation.solves;
 
   EXPECT_EQ(stored.kind, "evaluate");

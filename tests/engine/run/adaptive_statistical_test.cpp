@@ -69,14 +69,14 @@ bool inside(double value, double low, double high) { return low <= value && valu
 
 Tally sensitivity_tally(std::size_t poses, double relative_error) {
   Tally tally;
-  Study study = study_of(&kSensitivityStudy, poses, relative_error);
+  Study study = study_of(&sensitivity::kStudy, poses, relative_error);
   for (std::size_t n = 0; n < kRepetitions; ++n) {
     study.seed = 1000 + n;
     const test::AdaptiveRun run(study);
     Moments over_poses;
     for (const double weight : weights(run.plan)) over_poses.add(std::abs(weight) * kFoldedStd);
     const double truth = over_poses.mean() + (poses > 1 ? over_poses.standard_deviation() : 0.0);
-    const SensitivityResult found = run.sensitivity({1, {}, nullptr}).value();
+    const sensitivity::Result found = run.sensitivity({1, {}, nullptr}).value();
     const ConvergenceResult& end = found.convergence.value();
     EXPECT_EQ(end.reached[0], 1);
     EXPECT_LE(found.global_ci_high(0, 0) - found.global(0, 0), relative_error * found.global(0, 0));
@@ -91,11 +91,11 @@ Tally sensitivity_tally(std::size_t poses, double relative_error) {
 
 Tally monte_carlo_tally(std::size_t poses, double relative_error) {
   Tally tally;
-  Study study = study_of(&kMonteCarloStudy, poses, relative_error);
+  Study study = study_of(&monte_carlo::kStudy, poses, relative_error);
   for (std::size_t n = 0; n < kRepetitions; ++n) {
     study.seed = 1000 + n;
     const test::AdaptiveRun run(study);
-    const MonteCarloResult found = run.monte_carlo({1, {}, nullptr}).value();
+    const monte_carlo::Result found = run.monte_carlo({1, {}, nullptr}).value();
     const ConvergenceResult& end = found.convergence.value();
     const std::vector<double> all = weights(run.plan);
     double truth = 0.0;

@@ -32,11 +32,11 @@ inline Study adaptive_study(KindOfStudy kind, double relative_error, std::size_t
 struct AdaptiveRun : Prepared {
   using Prepared::Prepared;
 
-  std::optional<SensitivityResult> sensitivity(const RunOptions& options) const {
-    return run_sensitivity(plan, *model, study.analysis.conf_level, options);
+  std::optional<sensitivity::Result> sensitivity(const RunOptions& options) const {
+    return sensitivity::run_sensitivity(plan, *model, study.analysis.conf_level, options);
   }
-  std::optional<MonteCarloResult> monte_carlo(const RunOptions& options) const {
-    return run_monte_carlo(plan, *model, study.analysis, options);
+  std::optional<monte_carlo::Result> monte_carlo(const RunOptions& options) const {
+    return monte_carlo::run_monte_carlo(plan, *model, study.analysis, options);
   }
 };
 

@@ -36,7 +36,7 @@ Bits bits_of(const ConvergenceResult& found) {
   return bits;
 }
 
-Bits bits_of(const SensitivityResult& found) {
+Bits bits_of(const sensitivity::Result& found) {
   EXPECT_FALSE(found.history) << "what a history would say is in the convergence";
   Bits bits = bits_of(found.convergence.value());
   bits.insert(bits.end(), found.count.begin(), found.count.end());
@@ -47,7 +47,7 @@ Bits bits_of(const SensitivityResult& found) {
   return bits;
 }
 
-Bits bits_of(const MonteCarloResult& found) {
+Bits bits_of(const monte_carlo::Result& found) {
   Bits bits = bits_of(found.convergence.value());
   for (const std::span<const double> values : std::initializer_list<std::span<const double>>{
            found.mean, found.mean_ci_low, found.std, found.min, found.max, found.quantiles, found.overall_mean,
@@ -61,8 +61,8 @@ Bits bits_of(const MonteCarloResult& found) {
 /// Runs the study. Returns the bits of its result, or none if the run was stopped.
 std::optional<Bits> run(const AdaptiveRun& run, const RunOptions& options) {
   const auto bits = [](const auto& result) { return result ? std::optional(bits_of(*result)) : std::nullopt; };
-  return run.study.analysis.kind == &kSensitivityStudy ? bits(run.sensitivity(options))
-                                                       : bits(run.monte_carlo(options));
+  return run.study.analysis.kind == &sensitivity::kStudy ? bits(run.sensitivity(options))
+                                                         : bits(run.monte_carlo(options));
 }
 
 RunOptions on_threads(std::size_t threads) {
@@ -72,8 +72,8 @@ RunOptions on_threads(std::size_t threads) {
 }
 
 TEST(AdaptiveSensitivity, EachErrorEndsAtItsOwnMilestone) {
-  const AdaptiveRun study(adaptive_study(&kSensitivityStudy, 0.015, 100'000));
-  const SensitivityResult found = study.sensitivity({}).value();
+  const AdaptiveRun study(adaptive_study(&sensitivity::kStudy, 0.015, 100'000));
+  const sensitivity::Result found = study.sensitivity({}).value();
   const ConvergenceResult& end = found.convergence.value();
   const std::size_t milestones = end.course.samples.size();
   EXPECT_EQ(end.samples[2], 1000u) << "an error without effect has nothing to wait for";
@@ -106,11 +106,11 @@ TEST(AdaptiveSensitivity, EachErrorEndsAtItsOwnMilestone) {
 }
 
 TEST(AdaptiveSensitivity, GivesTheBitsOfAsManyFixedSamples) {
-  Study study = adaptive_study(&kSensitivityStudy, 0.015, 100'000);
-  const SensitivityResult found = AdaptiveRun(study).sensitivity({}).value();
+  Study study = adaptive_study(&sensitivity::kStudy, 0.015, 100'000);
+  const sensitivity::Result found = AdaptiveRun(study).sensitivity({}).value();
   study.analysis.samples = found.convergence->samples[0];
   study.analysis.adaptive.reset();
-  const SensitivityResult fixed = AdaptiveRun(study).sensitivity({}).value();
+  const sensitivity::Result fixed = AdaptiveRun(study).sensitivity({}).value();
   EXPECT_FALSE(fixed.convergence);
   EXPECT_EQ(fixed.global(0, 0), found.global(0, 0));
   EXPECT_EQ(fixed.local(0, 0, 0), found.local(0, 0, 0));
@@ -118,8 +118,8 @@ TEST(AdaptiveSensitivity, GivesTheBitsOfAsManyFixedSamples) {
 }
 
 TEST(AdaptiveSensitivity, MaxEndsWhatDoesNotReachIt) {
-  const AdaptiveRun study(adaptive_study(&kSensitivityStudy, 0.001, 4300));
-  const SensitivityResult found = study.sensitivity({}).value();
+  const AdaptiveRun study(adaptive_study(&sensitivity::kStudy, 0.001, 4300));
+  const sensitivity::Result found = study.sensitivity({}).value();
   const ConvergenceResult& end = found.convergence.value();
   EXPECT_EQ(end.course.samples, (std::vector<std::uint64_t>{1000, 2000, 3000, 4300}));
   EXPECT_EQ(end.samples, (std::vector<std::uint64_t>{4300, 4300, 1000}));
@@ -129,7 +129,7 @@ TEST(AdaptiveSensitivity, MaxEndsWhatDoesNotReachIt) {
 }
 
 TEST(AdaptiveSensitivity, FewerThanTheFirstMilestoneAreOneRound) {
-  Study study = adaptive_study(&kSensitivityStudy, 0.5, 700);
+  Study study = adaptive_study(&sensitivity::kStudy, 0.5, 700);
   study.analysis.adaptive->min = 2;
   const ConvergenceResult end = AdaptiveRun(study).sensitivity({})->convergence.value();
   EXPECT_EQ(end.course.samples, (std::vector<std::uint64_t>{700}));
@@ -137,8 +137,8 @@ TEST(AdaptiveSensitivity, FewerThanTheFirstMilestoneAreOneRound) {
 }
 
 TEST(AdaptiveMonteCarlo, EndsWhereEveryOverallMeanIsReached) {
-  const AdaptiveRun study(adaptive_study(&kMonteCarloStudy, 0.01, 100'000));
-  const MonteCarloResult found = study.monte_carlo({}).value();
+  const AdaptiveRun study(adaptive_study(&monte_carlo::kStudy, 0.01, 100'000));
+  const monte_carlo::Result found = study.monte_carlo({}).value();
   const ConvergenceResult& end = found.convergence.value();
   ASSERT_EQ(end.samples.size(), 1u);
   EXPECT_LT(end.samples[0], 100'000u);
@@ -159,7 +159,7 @@ TEST(AdaptiveMonteCarlo, EndsWhereEveryOverallMeanIsReached) {
 }
 
 TEST(Rounds, ResponsesThatDoNotDecideAreReportedOnly) {
-  const AdaptiveRun run(adaptive_study(&kMonteCarloStudy, 0.01, 4000));
+  const AdaptiveRun run(adaptive_study(&monte_carlo::kStudy, 0.01, 4000));
   Rounds rounds(run.plan, {2, {0}, 0.95, {0.0, 0.0}});
   EXPECT_FALSE(rounds.go_on([](std::size_t) {
     return std::vector<Estimate>{{1.0, {0.995, 1.005}}, {1.0, {0.0, 2.0}}};
@@ -168,7 +168,7 @@ TEST(Rounds, ResponsesThatDoNotDecideAreReportedOnly) {
 }
 
 TEST(Rounds, ExpectTheSolvesThatTheHalfWidthsAskFor) {
-  Study study = adaptive_study(&kMonteCarloStudy, 0.01, 100'000);
+  Study study = adaptive_study(&monte_carlo::kStudy, 0.01, 100'000);
   const AdaptiveRun run(study);
   Rounds rounds(run.plan, {1, {0}, 0.95, {0.0}});
   EXPECT_EQ(rounds.samples(0), 1000u);
@@ -181,7 +181,7 @@ TEST(Rounds, ExpectTheSolvesThatTheHalfWidthsAskFor) {
 }
 
 TEST(Rounds, WhatIsUnknownIsNotReached) {
-  const AdaptiveRun run(adaptive_study(&kMonteCarloStudy, 0.01, 3000));
+  const AdaptiveRun run(adaptive_study(&monte_carlo::kStudy, 0.01, 3000));
   const double nan = std::nan("");
   for (const Estimate& unknown : {Estimate{nan, {nan, nan}}, Estimate{1.0, {nan, nan}}, Estimate{1.0, {1.0, nan}}}) {
     Rounds rounds(run.plan, {1, {0}, 0.95, {kIndexRounding}});
@@ -193,7 +193,7 @@ TEST(Rounds, WhatIsUnknownIsNotReached) {
 }
 
 TEST(Rounds, BothEndsOfAnIntervalCount) {
-  const AdaptiveRun run(adaptive_study(&kMonteCarloStudy, 0.01, 3000));
+  const AdaptiveRun run(adaptive_study(&monte_carlo::kStudy, 0.01, 3000));
   for (const Estimate& wide :
        {Estimate{1.0, {0.98, 1.001}}, Estimate{1.0, {0.999, 1.02}}, Estimate{-1.0, {-1.02, -1.0}}}) {
     Rounds rounds(run.plan, {1, {0}, 0.95, {0.0}});
@@ -301,10 +301,10 @@ TEST_P(Adaptive, TakesOrRefusesOtherBytes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Adaptive,
-                         testing::Values(Case{"SensitivityReached", &kSensitivityStudy, 0.02, 20'000},
-                                         Case{"SensitivityMax", &kSensitivityStudy, 0.012, 4300},
-                                         Case{"MonteCarloReached", &kMonteCarloStudy, 0.015, 20'000},
-                                         Case{"MonteCarloMax", &kMonteCarloStudy, 0.006, 4300}),
+                         testing::Values(Case{"SensitivityReached", &sensitivity::kStudy, 0.02, 20'000},
+                                         Case{"SensitivityMax", &sensitivity::kStudy, 0.012, 4300},
+                                         Case{"MonteCarloReached", &monte_carlo::kStudy, 0.015, 20'000},
+                                         Case{"MonteCarloMax", &monte_carlo::kStudy, 0.006, 4300}),
                          [](const auto& one) { return one.param.name; });
 
 }  // namespace

@@ -186,7 +186,7 @@ TEST(Allocation, NonePerSampleInAUnit) {
   // Allocations of a unit: the nominal displacements of the pose, the moments of the three responses, and the indices
   // within the unit.
   const auto count = [](std::size_t samples) {
-    return allocations_per_unit<UnitEvaluator>(&kSensitivityStudy, samples);
+    return allocations_per_unit<UnitEvaluator>(&sensitivity::kStudy, samples);
   };
   EXPECT_LE(count(Plan::kUnitSamples), 5.0);
   EXPECT_EQ(count(101), count(Plan::kUnitSamples));
@@ -197,7 +197,7 @@ TEST(Allocation, NonePerSampleInAMonteCarloUnit) {
   // In addition to those of a sensitivity unit: the buckets of the quantile sketches of the three responses, and the
   // sums for the main effects.
   const auto count = [](std::size_t samples) {
-    return allocations_per_unit<PoseUnitEvaluator>(&kMonteCarloStudy, samples);
+    return allocations_per_unit<PoseUnitEvaluator>(&monte_carlo::kStudy, samples);
   };
   EXPECT_LE(count(10), 32.0);
   EXPECT_LE(count(Plan::kUnitSamples), 32.0);

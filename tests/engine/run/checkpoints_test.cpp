@@ -190,7 +190,8 @@ TEST_P(CheckpointsInFiles, AreTheSameFromDisk) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, CheckpointsInFiles,
-                         testing::Values(&kSensitivityStudy, &kMonteCarloStudy, &kEvaluateStudy, &kIdentificationStudy),
+                         testing::Values(&sensitivity::kStudy, &monte_carlo::kStudy, &evaluate::kStudy,
+                                         &identification::kStudy),
                          kind_name);
 
 }  // namespace

@@ -74,7 +74,8 @@ TEST_P(Continuation, StopsInAStateToContinue) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Continuation,
-                         testing::Values(&kSensitivityStudy, &kMonteCarloStudy, &kEvaluateStudy, &kIdentificationStudy),
+                         testing::Values(&sensitivity::kStudy, &monte_carlo::kStudy, &evaluate::kStudy,
+                                         &identification::kStudy),
                          kind_name);
 
 class Extension : public testing::TestWithParam<KindOfStudy> {};
@@ -113,7 +114,7 @@ TEST_P(Extension, NeverGivesFewerSamples) {
   EXPECT_THROW(record(Prepared(study_of(GetParam(), 2200)), longer.states.back()), BytesError);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, Extension, testing::Values(&kSensitivityStudy, &kMonteCarloStudy), kind_name);
+INSTANTIATE_TEST_SUITE_P(Kinds, Extension, testing::Values(&sensitivity::kStudy, &monte_carlo::kStudy), kind_name);
 
 /// The final states of one shard of a study.
 States run_shard(const Prepared& prepared, const Shard& shard) {
@@ -157,8 +158,8 @@ TEST_P(Sharding, RefusesAShardTwice) {
   EXPECT_THROW(record(prepared, states), BytesError);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, Sharding, testing::Values(&kSensitivityStudy, &kMonteCarloStudy, &kEvaluateStudy),
-                         kind_name);
+INSTANTIATE_TEST_SUITE_P(Kinds, Sharding,
+                         testing::Values(&sensitivity::kStudy, &monte_carlo::kStudy, &evaluate::kStudy), kind_name);
 
 TEST(Shard, PartsFollowEachOther) {
   for (const std::size_t all : {0UL, 1UL, 5UL, 3950UL, 1UL << 62U}) {
@@ -235,8 +236,8 @@ TEST_P(Sharding, MergesOrRefusesAnyOtherBytes) {
 }
 
 TEST(Continuation, RefusesAStateOfAnotherKind) {
-  const Prepared sensitivity(study_of(&kSensitivityStudy, 300));
-  const Prepared monte_carlo(study_of(&kMonteCarloStudy, 300));
+  const Prepared sensitivity(study_of(&sensitivity::kStudy, 300));
+  const Prepared monte_carlo(study_of(&monte_carlo::kStudy, 300));
   EXPECT_FALSE(accepted(sensitivity, record(monte_carlo).states.back()));
   EXPECT_FALSE(accepted(monte_carlo, record(sensitivity).states.back()));
 }

@@ -113,11 +113,11 @@ std::vector<Failure> expected_failures(const Prepared& prepared) {
 }
 
 std::optional<std::vector<Failure>> run(const Prepared& prepared, const RunOptions& options) {
-  if (prepared.study.analysis.kind == &kMonteCarloStudy) {
-    const auto result = run_monte_carlo(prepared.plan, *prepared.model, prepared.study.analysis, options);
+  if (prepared.study.analysis.kind == &monte_carlo::kStudy) {
+    const auto result = monte_carlo::run_monte_carlo(prepared.plan, *prepared.model, prepared.study.analysis, options);
     return result ? std::optional(result->failures) : std::nullopt;
   }
-  const auto result = run_sensitivity(prepared.plan, *prepared.model, 0.95, options);
+  const auto result = sensitivity::run_sensitivity(prepared.plan, *prepared.model, 0.95, options);
   return result ? std::optional(result->failures) : std::nullopt;
 }
 
@@ -168,9 +168,10 @@ TEST_P(Failures, ReplayToTheirStatusAndDraws) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, Failures, testing::Values(&kSensitivityStudy, &kMonteCarloStudy), [](const auto& made) {
-  return made.param == &kSensitivityStudy ? "sensitivity" : "together";
-});
+INSTANTIATE_TEST_SUITE_P(Kinds, Failures, testing::Values(&sensitivity::kStudy, &monte_carlo::kStudy),
+                         [](const auto& made) {
+                           return made.param == &sensitivity::kStudy ? "sensitivity" : "together";
+                         });
 
 }  // namespace
 }  // namespace poesy

@@ -18,7 +18,7 @@ Plan plan_of(std::size_t samples) {
   study.errors.by_factor.assign(3, Distribution::normal(1e-3));
   study.poses.count = 1;
   study.poses.workspace = {{-0.3, -0.2}, {-0.1, 0.1}, {-0.1, 0.1}};
-  study.analysis.kind = &kSensitivityStudy;
+  study.analysis.kind = &sensitivity::kStudy;
   study.analysis.factors = {FactorIndex(0)};
   study.analysis.samples = samples;
   return test::Prepared(study).plan;
@@ -51,7 +51,7 @@ TEST(HistoryPoints, AboveAUnitAreWholeUnits) {
 
 TEST(HistoryPoints, AdaptiveSamplesHaveNone) {
   Study study;
-  study.analysis.kind = &kSensitivityStudy;
+  study.analysis.kind = &sensitivity::kStudy;
   study.analysis.samples = 10000;
   study.analysis.adaptive = AdaptiveSamples{1000, 0.1};
   static const Catalog catalog = test::fake_catalog();

@@ -34,10 +34,10 @@ Study study_of(std::size_t poses, std::size_t samples) {
   for (const double sigma : {1e-3, 2e-3, 5e-3}) study.errors.by_factor.push_back(Distribution::normal(sigma));
   study.poses.count = poses;
   study.poses.workspace = {{-0.3, -0.2}, {-0.1, 0.1}, {-0.1, 0.1}};
-  study.analysis.kind = &kMonteCarloStudy;
+  study.analysis.kind = &monte_carlo::kStudy;
   study.analysis.factors = {FactorIndex(0), FactorIndex(2), FactorIndex(1)};
   study.analysis.samples = samples;
-  asked_of<MonteCarloOptions>(study.analysis).quantiles = {0.05, 0.5, 0.9, 0.99};
+  asked_of<monte_carlo::Options>(study.analysis).quantiles = {0.05, 0.5, 0.9, 0.99};
   study.seed = 3;
   return study;
 }
@@ -67,10 +67,12 @@ class FailingModel : public test::FakeModel {
   };
 };
 
-MonteCarloResult run(const Study& study, const Model& model, std::size_t threads) {
+monte_carlo::Result run(const Study& study, const Model& model, std::size_t threads) {
   RunOptions options;
   options.threads = threads;
-  return run_monte_carlo(Plan(study, select_poses(study.poses, model).poses), model, study.analysis, options).value();
+  return monte_carlo::run_monte_carlo(Plan(study, select_poses(study.poses, model).poses), model, study.analysis,
+                                      options)
+      .value();
 }
 
 /// All samples of response r at a pose, recomputed one by one from the addresses of their random numbers.
@@ -92,7 +94,7 @@ TEST(RunMonteCarlo, AgreesWithAllSamplesSorted) {
   const Study study = study_of(3, 2 * Plan::kUnitSamples + 77);
   const test::FakeModel model;
   const PoseSet poses = select_poses(study.poses, model).poses;
-  const MonteCarloResult found = run(study, model, 2);
+  const monte_carlo::Result found = run(study, model, 2);
   std::vector<std::vector<double>> overall(2);
   for (std::size_t r = 0; r < 2; ++r) {
     for (std::size_t m = 0; m < 3; ++m) {
@@ -102,12 +104,14 @@ TEST(RunMonteCarlo, AgreesWithAllSamplesSorted) {
       EXPECT_EQ(found.min(r, m), std::ranges::min(samples));
       EXPECT_EQ(found.max(r, m), std::ranges::max(samples));
       for (std::size_t q = 0; q < 4; ++q) {
-        const double truth = test::sorted_quantile(samples, asked_of<MonteCarloOptions>(study.analysis).quantiles[q]);
+        const double truth =
+            test::sorted_quantile(samples, asked_of<monte_carlo::Options>(study.analysis).quantiles[q]);
         EXPECT_NEAR(found.quantiles(r, m, q), truth, found.quantile_relative_error * truth);
       }
     }
     for (std::size_t q = 0; q < 4; ++q) {
-      const double truth = test::sorted_quantile(overall[r], asked_of<MonteCarloOptions>(study.analysis).quantiles[q]);
+      const double truth =
+          test::sorted_quantile(overall[r], asked_of<monte_carlo::Options>(study.analysis).quantiles[q]);
       EXPECT_NEAR(found.overall_quantiles(r, q), truth, found.quantile_relative_error * truth);
     }
     EXPECT_EQ(found.overall_count(r), overall[r].size());
@@ -135,12 +139,12 @@ Plain plain(std::vector<double> samples, double conf_level) {
 
 TEST(RunMonteCarlo, HasRootMeanSquaresAndIntervalsOfItsSamples) {
   Study study = study_of(3, 2 * Plan::kUnitSamples + 77);
-  asked_of<MonteCarloOptions>(study.analysis).judge = Judge::share;
-  asked_of<MonteCarloOptions>(study.analysis).share = 0.99;
+  asked_of<monte_carlo::Options>(study.analysis).judge = Judge::share;
+  asked_of<monte_carlo::Options>(study.analysis).share = 0.99;
   study.analysis.limits = {{0, 1e9}, {1, 1e-9}};
   const test::FakeModel model;
   const PoseSet poses = select_poses(study.poses, model).poses;
-  const MonteCarloResult found = run(study, model, 2);
+  const monte_carlo::Result found = run(study, model, 2);
   constexpr double kBucket = 2.0 * QuantileSketch::kRelativeError;
   double worst = 0.0;
   for (std::size_t m = 0; m < 3; ++m) {
@@ -169,7 +173,7 @@ TEST(RunMonteCarlo, FindsTheFoldedNormal) {
   const Study study = study_of(kPoses, kSamples);
   const test::FakeModel model;
   const PoseSet poses = select_poses(study.poses, model).poses;
-  const MonteCarloResult found = run(study, model, 2);
+  const monte_carlo::Result found = run(study, model, 2);
   // The quantiles of |N(0, 1)| for 0.05, 0.5, 0.9 and 0.99 are those of N(0, 1) for 0.525, 0.75, 0.95 and 0.995.
   constexpr double kFolded[4] = {0.0627067779432, 0.6744897501961, 1.6448536269515, 2.5758293035489};
   const double n = kSamples;
@@ -190,7 +194,7 @@ TEST(RunMonteCarlo, FindsTheFoldedNormal) {
       // The folded normal's kurtosis is 3.87.
       EXPECT_NEAR(found.std(r, m), std, kErrors * std * std::sqrt((3.87 - 1.0) / (4.0 * n)));
       for (std::size_t q = 0; q < 4; ++q) {
-        const double level = asked_of<MonteCarloOptions>(study.analysis).quantiles[q];
+        const double level = asked_of<monte_carlo::Options>(study.analysis).quantiles[q];
         const double error = std::sqrt(level * (1.0 - level) / n) / (2.0 * normal_density(kFolded[q]));
         EXPECT_NEAR(found.quantiles(r, m, q), s * kFolded[q],
                     s * (kErrors * error + found.quantile_relative_error * kFolded[q]));
@@ -202,9 +206,9 @@ TEST(RunMonteCarlo, FindsTheFoldedNormal) {
 TEST(RunMonteCarlo, HasTheSameBitsForAnyNumberOfThreads) {
   const Study study = study_of(5, 3 * Plan::kUnitSamples + 17);
   const test::FakeModel model;
-  const MonteCarloResult one = run(study, model, 1);
+  const monte_carlo::Result one = run(study, model, 1);
   for (const std::size_t threads : {1u, 2u, 3u, 7u}) {
-    const MonteCarloResult many = run(study, model, threads);
+    const monte_carlo::Result many = run(study, model, threads);
     EXPECT_EQ(many.mean, one.mean);
     EXPECT_EQ(many.mean_ci_low, one.mean_ci_low);
     EXPECT_EQ(many.mean_ci_high, one.mean_ci_high);
@@ -239,11 +243,11 @@ TEST(RunMonteCarlo, OfOneErrorDrawsWhatASensitivityStudyDraws) {
   Study study = study_of(3, 1500);
   study.analysis.factors = {FactorIndex(1)};
   const test::FakeModel model;
-  const MonteCarloResult together = run(study, model, 2);
-  study.analysis.kind = &kSensitivityStudy;
-  const auto alone =
-      run_sensitivity(Plan(study, select_poses(study.poses, model).poses), model, study.analysis.conf_level, {})
-          .value();
+  const monte_carlo::Result together = run(study, model, 2);
+  study.analysis.kind = &sensitivity::kStudy;
+  const auto alone = sensitivity::run_sensitivity(Plan(study, select_poses(study.poses, model).poses), model,
+                                                  study.analysis.conf_level, {})
+                         .value();
   EXPECT_TRUE(std::ranges::equal(together.mean, alone.mean));
   EXPECT_TRUE(std::ranges::equal(together.std, alone.std));
 }
@@ -251,9 +255,9 @@ TEST(RunMonteCarlo, OfOneErrorDrawsWhatASensitivityStudyDraws) {
 TEST(RunMonteCarlo, CountsWhatThePolicySays) {
   Study study = study_of(2, 1002);  // units of 1000 and 2 samples
   const FailingModel model;
-  const MonteCarloResult solved = run(study, model, 1);
+  const monte_carlo::Result solved = run(study, model, 1);
   study.not_converged = NotConverged::include;
-  const MonteCarloResult usable = run(study, model, 1);
+  const monte_carlo::Result usable = run(study, model, 1);
   EXPECT_TRUE(std::ranges::equal(solved.count, std::vector<std::uint64_t>(4, 500)));
   EXPECT_TRUE(std::ranges::equal(usable.count, std::vector<std::uint64_t>(4, 751)));
   EXPECT_TRUE(std::ranges::equal(usable.overall_count, std::vector<std::uint64_t>(2, 1502)));
@@ -264,7 +268,7 @@ TEST(RunMonteCarlo, CountsWhatThePolicySays) {
 }
 
 TEST(RunMonteCarlo, KnowsNothingWhereNoSampleCounts) {
-  const MonteCarloResult found = run(study_of(1, 2), FailingModel(), 1);
+  const monte_carlo::Result found = run(study_of(1, 2), FailingModel(), 1);
   EXPECT_TRUE(std::ranges::equal(found.count, std::vector<std::uint64_t>(2, 0)));
   for (const std::span<const double> values : std::initializer_list<std::span<const double>>{
            found.mean, found.mean_ci_low, found.std, found.min, found.max, found.quantiles, found.overall_mean,
@@ -282,7 +286,8 @@ TEST(RunMonteCarlo, StopsWhenAsked) {
   options.threads = 2;
   options.stop = &stop;
   options.progress = [&](const Progress& /*progress*/) { stop = true; };
-  EXPECT_FALSE(run_monte_carlo(Plan(study, select_poses(study.poses, model).poses), model, study.analysis, options));
+  EXPECT_FALSE(monte_carlo::run_monte_carlo(Plan(study, select_poses(study.poses, model).poses), model, study.analysis,
+                                            options));
 }
 
 }  // namespace

@@ -139,8 +139,8 @@ std::string kind_and_size(const testing::TestParamInfo<std::tuple<KindOfStudy, s
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, RanksOf,
-                         testing::Combine(testing::Values(&kSensitivityStudy, &kMonteCarloStudy, &kEvaluateStudy,
-                                                          &kIdentificationStudy),
+                         testing::Combine(testing::Values(&sensitivity::kStudy, &monte_carlo::kStudy, &evaluate::kStudy,
+                                                          &identification::kStudy),
                                           testing::Values(1, 2, 3, 4)),
                          kind_and_size);
 

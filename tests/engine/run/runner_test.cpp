@@ -27,7 +27,7 @@ Study study_of(std::size_t poses, std::size_t samples) {
   study.errors.by_factor = {normal, normal, normal};
   study.poses.count = poses;
   study.poses.workspace = {{-0.3, -0.2}, {-0.1, 0.1}, {-0.1, 0.1}};
-  study.analysis.kind = &kSensitivityStudy;
+  study.analysis.kind = &sensitivity::kStudy;
   study.analysis.factors = {FactorIndex(0), FactorIndex(2), FactorIndex(1)};
   study.analysis.samples = samples;
   study.seed = 3;
@@ -41,18 +41,18 @@ struct Prepared {
   Plan plan;
 };
 
-SensitivityResult run(const Study& study, std::size_t threads) {
+sensitivity::Result run(const Study& study, std::size_t threads) {
   const Prepared prepared(study);
   RunOptions options;
   options.threads = threads;
-  return run_sensitivity(prepared.plan, *prepared.model, 0.95, options).value();
+  return sensitivity::run_sensitivity(prepared.plan, *prepared.model, 0.95, options).value();
 }
 
 TEST(RunSensitivity, HasTheSameBitsForAnyNumberOfThreads) {
   const Study study = study_of(5, 3 * Plan::kUnitSamples + 17);
-  const SensitivityResult one = run(study, 1);
+  const sensitivity::Result one = run(study, 1);
   for (const std::size_t threads : {1u, 2u, 3u, 7u}) {
-    const SensitivityResult many = run(study, threads);
+    const sensitivity::Result many = run(study, threads);
     EXPECT_EQ(many.global, one.global);
     EXPECT_EQ(many.local, one.local);
     EXPECT_EQ(many.mean, one.mean);
@@ -65,7 +65,7 @@ TEST(RunSensitivity, HasTheSameBitsForAnyNumberOfThreads) {
 TEST(RunSensitivity, FindsTheKnownIndices) {
   // For a normal error e with standard deviation sigma, |w e| has the standard deviation |w| sigma sqrt(1 - 2/pi).
   const Study study = study_of(4, 20000);
-  const SensitivityResult result = run(study, 2);
+  const sensitivity::Result result = run(study, 2);
   const Prepared prepared(study);
   const double folded = std::sqrt(1.0 - 2.0 / std::numbers::pi);
   // The relative standard error of a standard deviation is sqrt((kurtosis - 1) / (4 n)); the kurtosis of a folded
@@ -84,7 +84,7 @@ TEST(RunSensitivity, FindsTheKnownIndices) {
 }
 
 TEST(RunSensitivity, CountsEverySample) {
-  const SensitivityResult result = run(study_of(3, 2500), 2);
+  const sensitivity::Result result = run(study_of(3, 2500), 2);
   EXPECT_EQ(result.total().total(), 3u * 3u * 2500u);
   for (const std::uint64_t count : result.count) EXPECT_EQ(count, 2500u);
 }
@@ -116,7 +116,7 @@ TEST(RunSensitivity, StopsWhenAsked) {
     reported = progress.solves;
     stop = true;
   };
-  EXPECT_FALSE(run_sensitivity(prepared.plan, *prepared.model, 0.95, options));
+  EXPECT_FALSE(sensitivity::run_sensitivity(prepared.plan, *prepared.model, 0.95, options));
   EXPECT_LT(reported, prepared.plan.solves() / 10);
 }
 

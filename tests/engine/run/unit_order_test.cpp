@@ -24,15 +24,15 @@ std::string hash_of(const Study& study, const Model& model, const std::vector<st
   UnitEvaluator evaluate(plan, model);
   std::vector<UnitStats> stats(plan.units());
   for (const std::size_t u : order) stats[u] = evaluate(plan.unit(u));
-  CellStats cells(model.description().responses.size(), plan.cells());
+  sensitivity::CellStats cells(model.description().responses.size(), plan.cells());
   for (std::size_t u = 0; u < plan.units(); ++u) {
     const WorkUnit unit = plan.unit(u);
     cells.merge(unit.slot * plan.poses().size() + unit.pose.value, stats[u]);
   }
-  SensitivityResult result =
-      sensitivity_result(plan, std::move(cells), background_responses(plan, model), response_rounding(model), 0.95);
-  result.index_change = SensitivityResult::Indices(result.global.lengths());  // not computed here
-  set_references(study, result);
+  sensitivity::Result result = sensitivity::sensitivity_result(
+      plan, std::move(cells), sensitivity::background_responses(plan, model), response_rounding(model), 0.95);
+  result.index_change = sensitivity::Result::Indices(result.global.lengths());  // not computed here
+  sensitivity::set_references(study, result);
   const test::TempFolder folder;
   write_result(folder / "r.h5", study, poses, std::move(result), {});
   return verify_result(folder / "r.h5").computed;

@@ -16,8 +16,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// A result with two responses at two poses, with four draws at each pose. One draw was not solved.
-MonteCarloResult draws() {
-  MonteCarloResult found;
+monte_carlo::Result draws() {
+  monte_carlo::Result found;
   found.overall_rms = {{2}, {2.0, 0.5}};
   found.share_magnitude = {{2, 2}, {3.0, 4.0, 1.0, 0.75}};
   found.solves.resize(2);
@@ -36,9 +36,9 @@ std::vector<QuantileSketch> overall() {
 }
 
 LimitVerdicts judged(Judge judge, const ValueLimit& first, const ValueLimit& second,
-                     const MonteCarloResult& found = draws()) {
+                     const monte_carlo::Result& found = draws()) {
   const std::vector<ResponseLimit> limits{{0, first}, {1, second}};
-  return judge_draws(limits, judge, 0.5, found, overall());
+  return monte_carlo::judge_draws(limits, judge, 0.5, found, overall());
 }
 
 TEST(JudgeDraws, ByRootMeanSquareUpToTheLimitItself) {
@@ -71,7 +71,7 @@ TEST(JudgeDraws, CountsTheDrawsWithinTheLimit) {
 }
 
 TEST(JudgeDraws, RefusesWhatIsNotKnown) {
-  MonteCarloResult found = draws();
+  monte_carlo::Result found = draws();
   found.overall_rms(0) = kNaN;
   EXPECT_FALSE(judged(Judge::rms, 1e9, 1.0, found).limits[0].passed);
   found.share_magnitude(0, 1) = kInfinity;
@@ -83,16 +83,16 @@ TEST(ValueAtRank, IsTheWorstOfTheShare) {
   QuantileSketch sketch;
   sketch.add(std::vector{-3.0, -1.0, 0.0, 0.5, 2.0, 4.0});
   const ValueLimit ends = ValueLimit::between(-1.0, 3.0);  // 4 is beyond by 1, -3 by 2
-  EXPECT_EQ(value_at_rank(sketch, ends, 6), -3.0);
-  EXPECT_EQ(value_at_rank(sketch, ends, 5), 4.0);
-  EXPECT_EQ(value_at_rank(sketch, ends, 4), -1.0);
-  EXPECT_TRUE(std::isnan(value_at_rank(sketch, ends, 7)));
-  EXPECT_EQ(value_at_rank(sketch, 1.0, 5), 3.0);
-  EXPECT_EQ(value_at_rank(sketch, 1.0, 7), kInfinity);
+  EXPECT_EQ(monte_carlo::value_at_rank(sketch, ends, 6), -3.0);
+  EXPECT_EQ(monte_carlo::value_at_rank(sketch, ends, 5), 4.0);
+  EXPECT_EQ(monte_carlo::value_at_rank(sketch, ends, 4), -1.0);
+  EXPECT_TRUE(std::isnan(monte_carlo::value_at_rank(sketch, ends, 7)));
+  EXPECT_EQ(monte_carlo::value_at_rank(sketch, 1.0, 5), 3.0);
+  EXPECT_EQ(monte_carlo::value_at_rank(sketch, 1.0, 7), kInfinity);
 }
 
 TEST(JudgeDraws, BetweenTwoEndsByTheWorstPose) {
-  MonteCarloResult found = draws();
+  monte_carlo::Result found = draws();
   found.share_magnitude = {{2, 2}, {3.0, -1.5, 1.0, 0.75}};
   const LimitVerdict beyond = judged(Judge::share, ValueLimit::between(-1.0, 4.0), 1.0, found).limits[0];
   EXPECT_FALSE(beyond.passed);

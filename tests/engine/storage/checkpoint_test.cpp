@@ -181,17 +181,17 @@ TEST(CheckpointIdentity, LeavesTheLimitOnFailuresOpen) {
 TEST(CheckpointIdentity, LeavesLimitsOpenButNotTheirShare) {
   Example example;
   Analysis& analysis = example.study.analysis;
-  analysis.kind = &kMonteCarloStudy;
+  analysis.kind = &monte_carlo::kStudy;
   const CheckpointIdentity without = identity_of(example.study, example.poses.poses);
   analysis.limits = {{0, 1e-3}};
   EXPECT_EQ(identity_of(example.study, example.poses.poses), without);
-  asked_of<MonteCarloOptions>(analysis).judge = Judge::share;
-  asked_of<MonteCarloOptions>(analysis).share = 0.99;
+  asked_of<monte_carlo::Options>(analysis).judge = Judge::share;
+  asked_of<monte_carlo::Options>(analysis).share = 0.99;
   const CheckpointIdentity at_99 = identity_of(example.study, example.poses.poses);
   EXPECT_FALSE(at_99 == without);
   analysis.limits = {{0, 2e-3}, {1, 1e-2}};
   EXPECT_EQ(identity_of(example.study, example.poses.poses), at_99);
-  asked_of<MonteCarloOptions>(analysis).share = 0.95;
+  asked_of<monte_carlo::Options>(analysis).share = 0.95;
   EXPECT_FALSE(identity_of(example.study, example.poses.poses) == at_99);
 }
 
@@ -202,7 +202,7 @@ TEST(CheckpointIdentity, HoldsTheSamplesThatAStudyDecidesBy) {
     const CheckpointIdentity fewer = identity_of(example.study, example.poses.poses);
     ++example.study.analysis.samples;
     const CheckpointIdentity more = identity_of(example.study, example.poses.poses);
-    EXPECT_EQ(more.study != fewer.study, kind == &kAllocationStudy) << kind->name;
+    EXPECT_EQ(more.study != fewer.study, kind == &allocation::kStudy) << kind->name;
   }
 }
 

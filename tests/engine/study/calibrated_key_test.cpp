@@ -96,9 +96,9 @@ TEST(Calibrated, IsRefusedByOtherKindsAndOtherModels) {
 }
 
 TEST(Calibrated, IsShownByTemplatesOfModelsThatCanBe) {
-  EXPECT_NE(template_text(kCatalog[0], kMonteCarloStudy).find("calibrated = false"), std::string::npos);
+  EXPECT_NE(template_text(kCatalog[0], monte_carlo::kStudy).find("calibrated = false"), std::string::npos);
   const Catalog others = test::fake_catalog();
-  EXPECT_EQ(template_text(others[0], kMonteCarloStudy).find("calibrated"), std::string::npos);
+  EXPECT_EQ(template_text(others[0], monte_carlo::kStudy).find("calibrated"), std::string::npos);
 }
 
 }  // namespace

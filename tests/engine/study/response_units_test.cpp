@@ -60,12 +60,12 @@ TEST(ResponseUnits, AreNamedInRefusals) {
 TEST(ResponseUnits, AreListedByTemplatesOfModelsThatHaveThem) {
   const std::string usual = "m, cm, mm, um, in, mil, thou, rad, mrad, deg, arcmin, arcsec, s, ms, min, h";
   const auto begins = [&](const Catalog& catalog, const std::string& more) {
-    const std::string text = template_text(catalog[0], kMonteCarloStudy);
+    const std::string text = template_text(catalog[0], monte_carlo::kStudy);
     EXPECT_NE(text.find("# Quantities are texts with a unit: " + usual + more + ".\n"), std::string::npos) << text;
   };
   begins(test::fake_catalog(), "");
   begins(kForce, ", N, kN");
-  EXPECT_NE(template_text(kMoment[0], kMonteCarloStudy).find("limits = { load = \"0.05 N m\" }"), std::string::npos);
+  EXPECT_NE(template_text(kMoment[0], monte_carlo::kStudy).find("limits = { load = \"0.05 N m\" }"), std::string::npos);
   EXPECT_NE(model_text(kMoment[0]).find("  load                  N m first response\n"), std::string::npos);
 }
 

@@ -59,10 +59,10 @@ TEST(Fidelity, StandsInTheResolvedText) {
 }
 
 TEST(Fidelity, StandsInTheTemplate) {
-  const std::string text = template_text(kCatalog[0], kSensitivityStudy);
+  const std::string text = template_text(kCatalog[0], sensitivity::kStudy);
   EXPECT_NE(text.find("\nfidelity = \"exact\"\n"), std::string::npos) << text;
   EXPECT_EQ(study_of(text).mechanism.fidelity, 0u);
-  EXPECT_EQ(template_text(test::fake_catalog()[0], kSensitivityStudy).find("\nfidelity"), std::string::npos);
+  EXPECT_EQ(template_text(test::fake_catalog()[0], sensitivity::kStudy).find("\nfidelity"), std::string::npos);
 }
 
 TEST(Fidelity, UnknownOneIsRefusedWithASuggestion) {
@@ -77,7 +77,7 @@ TEST(BothFidelities, AreReadAndWritten) {
   const Study study = study_of(study_with("fidelity = \"both\"\n"));
   EXPECT_EQ(study.mechanism.fidelity, 0u);
   EXPECT_EQ(study.mechanism.compared, 1u);
-  EXPECT_EQ(asked_of<SensitivityOptions>(study.analysis).linearity, 0.01);
+  EXPECT_EQ(asked_of<sensitivity::Options>(study.analysis).linearity, 0.01);
   const std::string text = resolved_text(study);
   EXPECT_NE(text.find("\nfidelity = \"both\"\n"), std::string::npos) << text;
   EXPECT_NE(text.find("\nlinearity = 0.01\n"), std::string::npos) << text;
@@ -88,9 +88,9 @@ TEST(BothFidelities, AreReadAndWritten) {
 TEST(BothFidelities, LinearityIsRead) {
   const std::string text = study_with("fidelity = \"both\"\n") + "[analysis]\nlinearity = 0.05\n";
   const Study study = study_of(text);
-  EXPECT_EQ(asked_of<SensitivityOptions>(study.analysis).linearity, 0.05);
+  EXPECT_EQ(asked_of<sensitivity::Options>(study.analysis).linearity, 0.05);
   const Study again = study_of(resolved_text(study));
-  EXPECT_EQ(asked_of<SensitivityOptions>(again.analysis).linearity, 0.05);
+  EXPECT_EQ(asked_of<sensitivity::Options>(again.analysis).linearity, 0.05);
 }
 
 TEST(BothFidelities, SecondIsSolvedAlone) {
@@ -102,11 +102,11 @@ TEST(BothFidelities, SecondIsSolvedAlone) {
 }
 
 TEST(BothFidelities, StandInTheTemplateOfSensitivityAlone) {
-  const std::string text = template_text(kCatalog[0], kSensitivityStudy);
+  const std::string text = template_text(kCatalog[0], sensitivity::kStudy);
   EXPECT_NE(text.find("# fidelity = \"both\""), std::string::npos) << text;
   EXPECT_NE(text.find("# linearity = 0.01"), std::string::npos) << text;
-  EXPECT_EQ(template_text(kCatalog[0], kMonteCarloStudy).find("fidelity = \"both\""), std::string::npos);
-  EXPECT_EQ(template_text(test::fake_catalog()[0], kSensitivityStudy).find("linearity"), std::string::npos);
+  EXPECT_EQ(template_text(kCatalog[0], monte_carlo::kStudy).find("fidelity = \"both\""), std::string::npos);
+  EXPECT_EQ(template_text(test::fake_catalog()[0], sensitivity::kStudy).find("linearity"), std::string::npos);
 }
 
 void expect_refusal(const std::string& marked, const Catalog& catalog, const std::vector<std::string>& words) {

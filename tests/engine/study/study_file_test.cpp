@@ -48,7 +48,7 @@ TEST(ReadStudy, TakesEveryValue) {
   EXPECT_DOUBLE_EQ(study.errors.by_factor[1].half_width(), 0.5 * kDegree);
   EXPECT_EQ(study.errors.by_factor[2].shape(), Distribution::Shape::truncated_normal);
   EXPECT_EQ(study.errors.by_factor[2].half_width(), 2e-3);
-  EXPECT_EQ(study.analysis.kind, &kSensitivityStudy);
+  EXPECT_EQ(study.analysis.kind, &sensitivity::kStudy);
   EXPECT_EQ(study.analysis.factors, (std::vector<FactorIndex>{FactorIndex(1), FactorIndex(0)}));
   EXPECT_EQ(study.analysis.samples, 100u);
   EXPECT_EQ(study.analysis.conf_level, 0.9);
@@ -509,12 +509,12 @@ TEST(StudyFile, TakesLimitsInTheOrderOfTheModelsResponses) {
   EXPECT_DOUBLE_EQ(by_rms.limits[0].allowed.to(), 0.5 * kDegree);
   EXPECT_EQ(by_rms.limits[1].response, 1u);
   EXPECT_DOUBLE_EQ(by_rms.limits[1].allowed.to(), 0.03e-3);
-  EXPECT_EQ(asked_of<MonteCarloOptions>(by_rms).judge, Judge::rms);
+  EXPECT_EQ(asked_of<monte_carlo::Options>(by_rms).judge, Judge::rms);
   const Analysis by_share =
       study_of(with_limits("monte-carlo", "judge = \"share\"\nshare = 0.9973\nlimits.linear_deformation = \"1 mm\""))
           .analysis;
-  EXPECT_EQ(asked_of<MonteCarloOptions>(by_share).judge, Judge::share);
-  EXPECT_EQ(asked_of<MonteCarloOptions>(by_share).share, 0.9973);
+  EXPECT_EQ(asked_of<monte_carlo::Options>(by_share).judge, Judge::share);
+  EXPECT_EQ(asked_of<monte_carlo::Options>(by_share).share, 0.9973);
   EXPECT_TRUE(study_of(test::kValidStudy).analysis.limits.empty());
 }
 

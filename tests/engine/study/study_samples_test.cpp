@@ -59,7 +59,7 @@ TEST(AdaptiveSamples, StandInTheResolvedText) {
 }
 
 TEST(AdaptiveSamples, StandInTheTemplate) {
-  for (const test::KindOfStudy kind : {&kSensitivityStudy, &kMonteCarloStudy}) {
+  for (const test::KindOfStudy kind : {&sensitivity::kStudy, &monte_carlo::kStudy}) {
     std::string text = template_text(kCatalog[0], *kind);
     const std::string_view fixed = "\nsamples = 1000";
     const std::string_view shown = "\n# samples = {";
@@ -68,7 +68,7 @@ TEST(AdaptiveSamples, StandInTheTemplate) {
     text.replace(text.find(fixed), 1, "\n# ");
     EXPECT_EQ(study_of(text).analysis.adaptive->relative_error, 0.01);
   }
-  EXPECT_EQ(template_text(kCatalog[0], kEvaluateStudy).find("relative_error"), std::string::npos);
+  EXPECT_EQ(template_text(kCatalog[0], evaluate::kStudy).find("relative_error"), std::string::npos);
 }
 
 TEST(AdaptiveSamples, WrongOnesAreRefused) {

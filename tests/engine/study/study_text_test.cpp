@@ -23,7 +23,7 @@ std::string shortest_study(std::string_view rest) {
   return "format = \"poesy-study\"\nversion = 1\n[mechanism]\nmodel = \"fake\"\n" + std::string(rest);
 }
 
-void expect_same(const IdentificationOptions& a, const IdentificationOptions& b) {
+void expect_same(const identification::Options& a, const identification::Options& b) {
   EXPECT_EQ(a.pose_share, b.pose_share);
   ASSERT_EQ(a.groups.size(), b.groups.size());
   for (std::size_t g = 0; g < a.groups.size(); ++g) {
@@ -33,7 +33,7 @@ void expect_same(const IdentificationOptions& a, const IdentificationOptions& b)
   }
 }
 
-void expect_same(const CaseOptions& a, const CaseOptions& b) {
+void expect_same(const evaluate::CaseOptions& a, const evaluate::CaseOptions& b) {
   ASSERT_EQ(a.cases.size(), b.cases.size());
   for (std::size_t c = 0; c < a.cases.size(); ++c) {
     EXPECT_EQ(a.cases[c].name, b.cases[c].name);
@@ -41,7 +41,7 @@ void expect_same(const CaseOptions& a, const CaseOptions& b) {
   }
 }
 
-void expect_same(const SensitivityOptions& a, const SensitivityOptions& b) {
+void expect_same(const sensitivity::Options& a, const sensitivity::Options& b) {
   EXPECT_EQ(a.linearity, b.linearity);
   ASSERT_EQ(a.reference.has_value(), b.reference.has_value());
   if (!a.reference) return;
@@ -49,7 +49,7 @@ void expect_same(const SensitivityOptions& a, const SensitivityOptions& b) {
   EXPECT_EQ(a.reference->tolerance, b.reference->tolerance);
 }
 
-void expect_same(const MonteCarloOptions& a, const MonteCarloOptions& b) {
+void expect_same(const monte_carlo::Options& a, const monte_carlo::Options& b) {
   EXPECT_EQ(a.quantiles, b.quantiles);
   EXPECT_EQ(a.judge, b.judge);
   EXPECT_EQ(a.share, b.share);
@@ -62,10 +62,10 @@ void expect_same_options(const Analysis& a, const Analysis& b) {
 }
 
 void expect_same_asked(const Analysis& a, const Analysis& b) {
-  if (a.kind == &kSensitivityStudy) expect_same_options<SensitivityOptions>(a, b);
-  if (a.kind == &kIdentificationStudy) expect_same_options<IdentificationOptions>(a, b);
-  if (a.kind == &kEvaluateStudy) expect_same_options<CaseOptions>(a, b);
-  if (a.kind == &kMonteCarloStudy) expect_same_options<MonteCarloOptions>(a, b);
+  if (a.kind == &sensitivity::kStudy) expect_same_options<sensitivity::Options>(a, b);
+  if (a.kind == &identification::kStudy) expect_same_options<identification::Options>(a, b);
+  if (a.kind == &evaluate::kStudy) expect_same_options<evaluate::CaseOptions>(a, b);
+  if (a.kind == &monte_carlo::kStudy) expect_same_options<monte_carlo::Options>(a, b);
 }
 
 void expect_same(const Study& a, const Study& b) {
@@ -225,7 +225,7 @@ TEST(ReadableValue, IsExactAndShort) {
 }
 
 TEST(Template, RunsAsItIsAndAsksForTheUsualStudy) {
-  const Study study = study_of(template_text(kCatalog[0], kSensitivityStudy));
+  const Study study = study_of(template_text(kCatalog[0], sensitivity::kStudy));
   const Study usual = study_of("title = \"Sensitivity of fake\"\n" +
                                shortest_study("[poses]\ncount = 158\n[analysis]\nbackground = { factors = "
                                               "\"benign\", linear = \"1 mm\", angular = \"1 deg\" }\n"));
@@ -239,14 +239,14 @@ TEST(Template, RunsForAModelWithoutSetsAndGeometry) {
   catalog[0].description.workspace_note = "two\nlines";
   catalog[0].build = [](std::span<const double>, std::size_t) { return std::make_unique<test::FakeModel>(); };
   const test::TempFolder folder;
-  const std::string path = folder.write("study.toml", template_text(catalog[0], kSensitivityStudy));
+  const std::string path = folder.write("study.toml", template_text(catalog[0], sensitivity::kStudy));
   const Study study = read_study(path, catalog, StudyUse::run);
   EXPECT_EQ(study.analysis.factors.size(), 3u);
   EXPECT_FALSE(study.analysis.background);
 }
 
 TEST(Template, NamesEveryKey) {
-  const std::string text = template_text(kCatalog[0], kSensitivityStudy);
+  const std::string text = template_text(kCatalog[0], sensitivity::kStudy);
   for (const char* key : {"format = ",        "version = ",
                           "title = ",         "model = ",
                           "arm = ",           "select = ",
@@ -274,7 +274,7 @@ TEST(Template, NamesEveryKey) {
 
 /// Each trajectory that a template shows as a comment can be read if it replaces the workspace.
 TEST(Template, ShowsTrajectoriesThatRead) {
-  const std::string text = template_text(kCatalog[0], kSensitivityStudy);
+  const std::string text = template_text(kCatalog[0], sensitivity::kStudy);
   std::size_t shown = 0;
   for (std::size_t at = text.find("# trajectory = "); at != std::string::npos;
        at = text.find("# trajectory = ", at + 1)) {

@@ -255,7 +255,7 @@ Study study_of(const std::string& model, const std::string& analysis) {
 double yield_of(const Study& study) {
   const auto model = build_model(study.mechanism);
   const Plan plan(study, select_poses(study.poses, *model).poses);
-  return run_monte_carlo(plan, *model, study.analysis, {}).value().machines->yield->value;
+  return monte_carlo::run_monte_carlo(plan, *model, study.analysis, {}).value().machines->yield->value;
 }
 
 TEST(CalibratedStudy, HasAYieldNoLower) {

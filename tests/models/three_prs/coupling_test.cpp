@@ -13,7 +13,7 @@
 namespace poesy::three_prs {
 namespace {
 
-using Choice = ErrorPattern::Choice;
+using Choice = coupling::ErrorPattern::Choice;
 
 const ModelDescription kModel = catalog_entry().description;
 const PoseSet kPoses(3, {0.0, 0.0, 0.8, 0.2, -0.1, 0.7, -0.3, 0.25, 0.95});
@@ -27,18 +27,19 @@ std::unique_ptr<Model> build(std::size_t fidelity) {
   return entry.build(geometry, fidelity);
 }
 
-CouplingStudy study(const ErrorPattern& pattern, std::vector<double> sizes) {
-  CouplingStudy some{std::move(sizes), {}, pattern, {}};
+coupling::Options study(const coupling::ErrorPattern& pattern, std::vector<double> sizes) {
+  coupling::Options some{std::move(sizes), {}, pattern, {}};
   for (const SourceSet& source : kModel.sources) {
     some.sources.push_back({source.name, kModel.find_set(source.set)->factors});
   }
   return some;
 }
 
-CouplingResult solve(const Model& model, const CouplingStudy& some) {
-  const auto evaluation = run_evaluation(model, {}, kPoses, coupling_table(some, kModel),
+coupling::Result solve(const Model& model, const coupling::Options& some) {
+  const auto evaluation = run_evaluation(model, {}, kPoses, coupling::coupling_table(some, kModel),
                                          Pairing::every_pose_with_every_row, {1, {}, {}}, Outcomes::responses);
-  return coupling_result(*evaluation, some, kModel, NotConverged::exclude, coupling_rounding(some, model));
+  return coupling::coupling_result(*evaluation, some, kModel, NotConverged::exclude,
+                                   coupling::coupling_rounding(some, model));
 }
 
 TEST(LiteratureSources, AreFactorSetsThatDoNotOverlap) {
@@ -82,7 +83,7 @@ class ByHand {
   double size_;
 };
 
-bool takes(const ErrorPattern& pattern, const Factor& factor) {
+bool takes(const coupling::ErrorPattern& pattern, const Factor& factor) {
   const bool limb = pattern.limbs != Choice::some || factor.limb == pattern.limb;
   const bool axis =
       pattern.components != Choice::some || factor.axis.empty() || factor.axis == "x" || factor.axis == "z";
@@ -90,14 +91,14 @@ bool takes(const ErrorPattern& pattern, const Factor& factor) {
 }
 
 /// Whether two errors of one source are in the same block of the pattern, so that they move together.
-bool together(const ErrorPattern& pattern, const Factor& a, const Factor& b) {
+bool together(const coupling::ErrorPattern& pattern, const Factor& a, const Factor& b) {
   return (pattern.limbs != Choice::independent || a.limb == b.limb) &&
          (pattern.components != Choice::independent || (a.axis == b.axis && a.frame == b.frame));
 }
 
-void expect_by_hand(const Model& model, const ErrorPattern& pattern) {
+void expect_by_hand(const Model& model, const coupling::ErrorPattern& pattern) {
   constexpr double kSize = 3e-4;
-  const CouplingResult found = solve(model, study(pattern, {kSize}));
+  const coupling::Result found = solve(model, study(pattern, {kSize}));
   ByHand by_hand(model, kSize);
   const std::size_t poses = kPoses.size();
   for (std::size_t r = 0; r < kModel.responses.size(); ++r) {
@@ -157,7 +158,7 @@ TEST(Coupling, IsWhatSolvesByHandGiveForEveryPattern) {
 
 /// The largest |interaction| and the largest |effect| over all subsets and poses, for responses that are components,
 /// not norms (m, rad).
-std::pair<double, double> largest_of_components(const CouplingResult& found) {
+std::pair<double, double> largest_of_components(const coupling::Result& found) {
   double interaction = 0.0;
   double effect = 0.0;
   for (std::size_t r = 0; r < kModel.responses.size(); ++r) {

@@ -17,7 +17,7 @@
 #include "engine/kinds/study_file.h"
 #include "tests/engine/calibration/read_mechanism.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 using Eigen::Index;
@@ -257,4 +257,4 @@ TEST(CalibratedLoads, ChangeWithTheSeed) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 TEST(SpreadOfErrors, IsTheToleranceOverTheSigmas) {
@@ -34,4 +34,4 @@ TEST(PartsOfADrawing, MayLeaveMoreToOtherErrorsTheFinerTheyAre) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::allocation

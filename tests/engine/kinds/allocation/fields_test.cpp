@@ -14,7 +14,7 @@
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 /// Expects equal numbers. NaN equals NaN.
@@ -71,16 +71,15 @@ class AllocationFile : public testing::Test {
   test::TempFolder folder_;
   test::Example example_;
   std::string path_;
-  AllocationResult written_;
+  Result written_;
 };
 
 TEST_F(AllocationFile, IsReadBackAsItWas) {
   const StoredResult result = stored();
-  const AllocationResult& found = allocation_of(result);
+  const Result& found = allocation_of(result);
   EXPECT_EQ(result.kind, "allocation");
   EXPECT_EQ(found.limit_use.lengths(), (std::array{std::size_t{2}, test::Example::kPoses}));
   EXPECT_EQ(found.part_names, written_.part_names);
-  using Result = AllocationResult;
   for (const auto member : {&Result::part_members, &Result::part_unit, &Result::chosen}) {
     EXPECT_EQ(found.*member, written_.*member);
   }
@@ -107,7 +106,6 @@ TEST_F(AllocationFile, IsReadBackAsItWas) {
 }
 
 TEST_F(AllocationFile, KeepsTheZonesOfADrawing) {
-  using Result = AllocationResult;
   using Texts = std::vector<std::string>;
   written_.part_names = {"rail.position", "rail.perpendicularity", "plate"};
   written_.part_unit = {{3}, Texts{"m", "m", "m"}};
@@ -124,7 +122,7 @@ TEST_F(AllocationFile, KeepsTheZonesOfADrawing) {
   written_.zone_is_needed = {{3}, {1, 0, 1}};
   write();
   const StoredResult result = stored();
-  const AllocationResult& found = allocation_of(result);
+  const Result& found = allocation_of(result);
   for (const auto member :
        {&Result::zone_feature, &Result::zone_limbs, &Result::zone_key, &Result::zone_shape, &Result::zone_datums}) {
     EXPECT_EQ(found.*member, written_.*member);
@@ -144,7 +142,7 @@ TEST_F(AllocationFile, KeepsTheZonesOfADrawing) {
 
 TEST_F(AllocationFile, KeepsTheWayAndTheCertificate) {
   const StoredResult result = stored();
-  const AllocationResult& found = allocation_of(result);
+  const Result& found = allocation_of(result);
   ASSERT_EQ(found.stages.size(), 2u);
   EXPECT_EQ(found.stages[1].name, "scaled to the yield");
   EXPECT_EQ(found.stages[1].cost, 10.0);
@@ -152,9 +150,8 @@ TEST_F(AllocationFile, KeepsTheWayAndTheCertificate) {
   EXPECT_EQ(found.stages[1].rms_share, 0.3);
   EXPECT_EQ(found.stages[1].machines, 20000u);
   EXPECT_EQ(found.stages[1].rejects, 48u);
-  for (const auto member :
-       {&AllocationResult::design_machines, &AllocationResult::design_rejects, &AllocationResult::design_most,
-        &AllocationResult::certificate_seed, &AllocationResult::certificate_most}) {
+  for (const auto member : {&Result::design_machines, &Result::design_rejects, &Result::design_most,
+                            &Result::certificate_seed, &Result::certificate_most}) {
     EXPECT_EQ(found.*member, written_.*member);
   }
   expect_same(found.certificate, written_.certificate);
@@ -282,4 +279,4 @@ TEST_F(AllocationFile, IsExportedWithItsWayAndItsCertificate) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::allocation

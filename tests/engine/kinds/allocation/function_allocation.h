@@ -17,17 +17,17 @@ namespace poesy::test {
 /// times the limit on root mean squares, as in the literature.
 inline const double kThreeSigma = std::erf(3.0 / std::sqrt(2.0));
 
-inline AllocatedPart part_of(std::size_t factor, const StatedCost& cost) {
-  AllocatedPart part;
+inline allocation::AllocatedPart part_of(std::size_t factor, const allocation::StatedCost& cost) {
+  allocation::AllocatedPart part;
   part.name = "part " + std::to_string(factor + 1);
   part.factors = {FactorIndex(factor)};
   part.cost = cost;
   return part;
 }
 
-inline StatedCost reciprocal(double a, double b) {
-  StatedCost cost;
-  cost.law = StatedCost::Law::reciprocal;
+inline allocation::StatedCost reciprocal(double a, double b) {
+  allocation::StatedCost cost;
+  cost.law = allocation::StatedCost::Law::reciprocal;
   cost.a = a;
   cost.b = b;
   return cost;
@@ -37,17 +37,17 @@ inline StatedCost reciprocal(double a, double b) {
 struct FunctionStudy {
   FunctionStudy(std::size_t errors, ErrorFunction function, double limit, std::size_t machines)
       : model(errors, {"y"}, std::move(function)), entry{model.description(), nullptr} {
-    study = function_study(entry, kAllocationStudy, Distribution::normal(0.05), machines);
+    study = function_study(entry, allocation::kStudy, Distribution::normal(0.05), machines);
     study.analysis.draws = Draws::per_machine;
     study.poses.workspace = {{0.0, 1.0}};  // the text of the certificate's study states the workspace
     study.analysis.limits = {{0, limit}};
     asked().yield = kThreeSigma;
   }
-  AllocationOptions& asked() { return asked_of<AllocationOptions>(study.analysis); }
+  allocation::Options& asked() { return asked_of<allocation::Options>(study.analysis); }
   StudyResult run(std::size_t threads = 2, std::vector<double> places = {0.5}) const {
     return *run_study(study, model, PoseSet(1, std::move(places)), {.threads = threads});
   }
-  AllocationResult find(std::size_t threads = 2) const { return run(threads).as<AllocationResult>(); }
+  allocation::Result find(std::size_t threads = 2) const { return run(threads).as<allocation::Result>(); }
 
   FunctionModel model;
   CatalogEntry entry;

@@ -15,7 +15,7 @@
 #include "tests/support/fake_model.h"
 #include "tests/support/input_error.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 using Choice = AllocatedPart::Choice;
@@ -47,7 +47,7 @@ Catalog catalog() {
 const Catalog kCatalog = catalog();
 
 const StudyKinds& kinds() {
-  static const StudyKinds some = study_kinds_of({&kSensitivityStudy, &kMonteCarloStudy, &kAllocationStudy}, {});
+  static const StudyKinds some = study_kinds_of({&sensitivity::kStudy, &monte_carlo::kStudy, &kStudy}, {});
   return some;
 }
 
@@ -69,7 +69,7 @@ Study study_of(const std::string& analysis, StudyUse use = StudyUse::run) {
   return read(with_analysis(analysis), kCatalog, use);
 }
 
-const AllocationOptions& options_of(const Study& study) { return asked_of<AllocationOptions>(study.analysis); }
+const Options& options_of(const Study& study) { return asked_of<Options>(study.analysis); }
 
 std::vector<AllocatedPart> parts_of(const std::string& parts) {
   return options_of(study_of(kLimits + kSigmas + parts)).parts;
@@ -86,7 +86,7 @@ const std::string kOnePart = "[[analysis.parts]]\nfactors = [\"delta_1\"]\n";
 
 TEST(StudyOfTolerances, HasDefaults) {
   const Study study = study_of(kLimits + kSigmas + kOnePart);
-  const AllocationOptions& asked = options_of(study);
+  const Options& asked = options_of(study);
   EXPECT_EQ(asked.yield, 0.9973);
   EXPECT_EQ(asked.confidence, 0.95);
   EXPECT_EQ(asked.aim, Aim::equal_effect);
@@ -134,7 +134,7 @@ TEST(StudyOfTolerances, TakesItsKeys) {
                                "yield = 0.99\nconfidence = 0.9\nsamples = 500\naim = \"equal-tolerance\"\ncpk = 2\n"
                                "factors = [\"delta_2\", \"delta_1\"]\nbackground = { factors = [\"epsilon_1\"] }\n" +
                                kOnePart + "cost = { law = \"reciprocal\", b = 1, unit = \"mm\" }\n");
-  const AllocationOptions& asked = options_of(study);
+  const Options& asked = options_of(study);
   EXPECT_EQ(asked.yield, 0.99);
   EXPECT_EQ(asked.confidence, 0.9);
   EXPECT_EQ(study.analysis.samples, 500u);
@@ -339,7 +339,7 @@ TEST(TemplateOfTolerances, JoinsLimbsWithTheSameJoints) {
     std::ostringstream text;
     text << std::ifstream(POESY_TEST_DATA "/mechanisms/" + name).rdbuf();
     const CatalogEntry entry = registry().from_text(text.str(), name);
-    return template_text(entry, kAllocationStudy, kinds());
+    return template_text(entry, kStudy, kinds());
   };
   EXPECT_NE(text_of("linear-delta.toml").find("\n# identical_limbs = [1, 2]\n"), std::string::npos);
   EXPECT_EQ(text_of("five-bar.toml").find("\n# identical_limbs"), std::string::npos);
@@ -390,8 +390,8 @@ void expect_reads_back(const std::string& written, const Catalog& models = kCata
     EXPECT_EQ(resolved_text(again), text);
     EXPECT_EQ(again.analysis.samples, study.analysis.samples);
     EXPECT_EQ(again.analysis.draws, study.analysis.draws);
-    const AllocationOptions& a = options_of(study);
-    const AllocationOptions& b = options_of(again);
+    const Options& a = options_of(study);
+    const Options& b = options_of(again);
     EXPECT_EQ(a.yield, b.yield);
     EXPECT_EQ(a.confidence, b.confidence);
     EXPECT_EQ(a.aim, b.aim);
@@ -463,9 +463,9 @@ bounds = ["0 m", "0.001 m"]
 TEST(TemplateOfTolerances, RunsForEveryMechanism) {
   for (const Catalog* models : {&registry(), &kCatalog}) {
     for (const CatalogEntry& entry : *models) {
-      const std::string text = template_text(entry, kAllocationStudy, kinds());
+      const std::string text = template_text(entry, kStudy, kinds());
       const Study study = read(text, *models);
-      const AllocationOptions& asked = options_of(study);
+      const Options& asked = options_of(study);
       EXPECT_EQ(asked.parts.size(), study.analysis.factors.size()) << entry.description.name;
       EXPECT_EQ(asked.aim, Aim::least_cost);
       expect_reads_back(text, *models);
@@ -474,7 +474,7 @@ TEST(TemplateOfTolerances, RunsForEveryMechanism) {
 }
 
 TEST(TemplateOfTolerances, ExplainsEveryKey) {
-  const std::string text = template_text(kCatalog.front(), kAllocationStudy, kinds());
+  const std::string text = template_text(kCatalog.front(), kStudy, kinds());
   for (const std::string_view path : {"analysis.parts", "analysis.parts.cost", "analysis.parts.processes"}) {
     const StudyTable* table = find_table(kinds().tables, path);
     ASSERT_NE(table, nullptr);
@@ -493,9 +493,9 @@ TEST(TemplateOfTolerances, ExplainsEveryKey) {
 
 TEST(TemplateOfTolerances, NeedsErrorsAndResponses) {
   ModelDescription model = kCatalog.front().description;
-  EXPECT_FALSE(kAllocationStudy.no_template(model));
+  EXPECT_FALSE(kStudy.no_template(model));
   model.responses.clear();
-  EXPECT_TRUE(kAllocationStudy.no_template(model));
+  EXPECT_TRUE(kStudy.no_template(model));
 }
 
 TEST(SharedKeys, AreThoseOfTheKindWhereItHasItsOwn) {
@@ -760,4 +760,4 @@ INSTANTIATE_TEST_SUITE_P(
     kName);
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::allocation

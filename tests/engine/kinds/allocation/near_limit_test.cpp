@@ -34,15 +34,15 @@ class NormalMachines {
     std::iota(numbers_.begin(), numbers_.end(), 0U);
   }
 
-  NearLimit near(std::size_t count) const { return {numbers_, loads(numbers_, 1.0), count}; }
+  allocation::NearLimit near(std::size_t count) const { return {numbers_, loads(numbers_, 1.0), count}; }
   /// The loads of machines, with the error of the part multiplied by `factor`.
   std::vector<double> loads(const std::vector<std::uint32_t>& machines, double factor) const {
     std::vector<double> loads;
     for (const std::uint32_t s : machines) loads.push_back(std::abs(others_[s] + factor * part_[s]));
     return loads;
   }
-  double plain(const NearLimit& near) const { return near.added_rejects(loads(near.machines(), kStep)); }
-  double mirrored(const NearLimit& near) const {
+  double plain(const allocation::NearLimit& near) const { return near.added_rejects(loads(near.machines(), kStep)); }
+  double mirrored(const allocation::NearLimit& near) const {
     const auto& machines = near.machines();
     return near.added_rejects(loads(machines, kStep), loads(machines, -1.0), loads(machines, -kStep));
   }
@@ -84,8 +84,12 @@ MeanOfSets over_sets(double share, std::size_t count, Estimate estimate) {
   return {mean, std::sqrt((squares / kSets - mean * mean) / (kSets - 1)), positive};
 }
 
-const auto kPlain = [](const NormalMachines& machines, const NearLimit& near) { return machines.plain(near); };
-const auto kMirrored = [](const NormalMachines& machines, const NearLimit& near) { return machines.mirrored(near); };
+const auto kPlain = [](const NormalMachines& machines, const allocation::NearLimit& near) {
+  return machines.plain(near);
+};
+const auto kMirrored = [](const NormalMachines& machines, const allocation::NearLimit& near) {
+  return machines.mirrored(near);
+};
 
 // Allows 4.5 standard errors, and 3 % for the bias of the window: the density of the loads is not constant within it.
 TEST(NearLimit, TellsWhatAPartDoes) {
@@ -110,7 +114,7 @@ TEST(NearLimit, TellsWhatAPartDoesThatHardlyDoesAnything) {
 
 TEST(NearLimit, NoEffectIsNoReject) {
   const NormalMachines machines(0.0, 1);
-  const NearLimit near = machines.near(700);
+  const allocation::NearLimit near = machines.near(700);
   EXPECT_EQ(machines.plain(near), 0.0);
   EXPECT_EQ(machines.mirrored(near), 0.0);
   EXPECT_EQ(near.change(machines.loads(near.machines(), kStep)), 0.0);
@@ -118,7 +122,7 @@ TEST(NearLimit, NoEffectIsNoReject) {
 
 TEST(NearLimit, TakesTheNearestMachines) {
   const NormalMachines machines(0.1, 1);
-  const NearLimit near = machines.near(700);
+  const allocation::NearLimit near = machines.near(700);
   EXPECT_NEAR(static_cast<double>(near.machines().size()), 700.0, 1.0);
   for (const double load : machines.loads(near.machines(), 1.0)) EXPECT_LE(std::abs(load - 1.0), near.window());
   EXPECT_EQ(machines.near(kMachines).window(), 0.2);
@@ -129,7 +133,7 @@ TEST(NearLimit, TakesTheNearestMachines) {
 TEST(NearLimit, CountsByDegrees) {
   const std::vector<std::uint32_t> numbers{1, 3, 5, 7};
   const std::vector<double> loads{0.5, 1.0, 1.3, HUGE_VAL};
-  const NearLimit near(numbers, loads, 10);
+  const allocation::NearLimit near(numbers, loads, 10);
   EXPECT_EQ(near.machines(), (std::vector<std::uint32_t>{3}));
   const double scale = 2.0 / 2.5;  // two rejects, but 2.5 fractional rejects: the machine at the limit counts one half
   EXPECT_DOUBLE_EQ(near.added_rejects(std::vector{1.2}), 0.5 * scale);
@@ -145,7 +149,7 @@ TEST(NearLimit, CountsByDegrees) {
 }
 
 TEST(NearLimit, NeedsNoMachines) {
-  const NearLimit near({}, {}, 700);
+  const allocation::NearLimit near({}, {}, 700);
   EXPECT_TRUE(near.machines().empty());
   EXPECT_EQ(near.added_rejects({}), 0.0);
   EXPECT_EQ(near.change({}), 0.0);

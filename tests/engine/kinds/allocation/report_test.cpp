@@ -15,7 +15,7 @@
 #include "tests/engine/kinds/stored.h"
 #include "tests/support/temp_folder.h"
 
-namespace poesy {
+namespace poesy::allocation {
 namespace {
 
 using Json = nlohmann::json;
@@ -31,7 +31,7 @@ class AllocationReport : public testing::Test {
     result = read_result(path);
   }
 
-  AllocationResult& found() { return found_in<AllocationResult>(result); }
+  Result& found() { return found_in<Result>(result); }
 
   /// Changes the verdict of the certificate.
   void decide(YieldVerdict::Decision decision) {
@@ -51,7 +51,7 @@ class AllocationReport : public testing::Test {
   }
 
   std::vector<Table> tables(RowOrder order = RowOrder::effect) const {
-    return result_tables(kAllocationReport, result, {default_ranking(result), order});
+    return result_tables(kReport, result, {default_ranking(result), order});
   }
   Table table(const std::string& name) const {
     for (Table& one : tables()) {
@@ -62,7 +62,7 @@ class AllocationReport : public testing::Test {
   }
   std::string html() const {
     const ReportedResult reported{result, "r.h5"};
-    return html_report(kAllocationReport, {&reported, 1});
+    return html_report(kReport, {&reported, 1});
   }
 
   StoredResult result;
@@ -129,7 +129,7 @@ TEST_F(AllocationReport, NamesTheErrorsThatAreInNoPart) {
   const std::string page = html();
   EXPECT_NE(page.find(text + ". The certificate holds only with these sizes."), std::string::npos);
   EXPECT_NE(page.find("data-table=\"in_no_part\""), std::string::npos);
-  EXPECT_NE(kAllocationReport.method(result).text.find(text), std::string::npos);
+  EXPECT_NE(kReport.method(result).text.find(text), std::string::npos);
 }
 
 TEST(InNoPartText, NamesThreeSizes) {
@@ -177,7 +177,7 @@ TEST_F(AllocationReport, OffersNoToleranceOfAPartWithoutEffect) {
   EXPECT_EQ(note_of(table("drawing"), "no effect"), "");
   found().mean_square_share(1) = 0.0;  // of the hinge under the tightest limit; another limit may depend on it
   EXPECT_EQ(column(table("drawing"), "drawing").front(), "+-0.1 deg");
-  found().bound(1) = AllocationResult::kWithoutEffect;
+  found().bound(1) = Result::kWithoutEffect;
   EXPECT_EQ(column(table("drawing"), "drawing").front(), "no effect");
   EXPECT_NE(note_of(table("drawing"), "no effect: "), "");
   found().bound(1) = 0;  // the hinge is no longer at its upper bound
@@ -380,16 +380,16 @@ TEST_F(AllocationReport, EscapesNames) {
 
 TEST_F(AllocationReport, ComparesTwoResultsPartByPart) {
   StoredResult other = result;
-  found_in<AllocationResult>(other).part_names[2] = "lid";
-  found_in<AllocationResult>(other).total_cost = 20.0;
+  found_in<Result>(other).part_names[2] = "lid";
+  found_in<Result>(other).total_cost = 20.0;
   const std::vector<ReportedResult> both{{result, "a.h5"}, {other, "b.h5"}};
-  const std::string page = html_report(kAllocationReport, both);
+  const std::string page = html_report(kReport, both);
   EXPECT_NE(page.find("Only in B: lid."), std::string::npos);
   EXPECT_NE(page.find("Cost of all parts"), std::string::npos);
   EXPECT_EQ(data(page)["figures"]["side-by-side"]["items"], (Json{"bars", "hinge"}));
   drop_costs();
   const std::vector<ReportedResult> without{{result, "a.h5"}, {other, "b.h5"}};
-  EXPECT_EQ(html_report(kAllocationReport, without).find("Cost of all parts"), std::string::npos);
+  EXPECT_EQ(html_report(kReport, without).find("Cost of all parts"), std::string::npos);
 }
 
 TEST_F(AllocationReport, IsJsonForPrograms) {
@@ -401,4 +401,4 @@ TEST_F(AllocationReport, IsJsonForPrograms) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::allocation

@@ -40,9 +40,9 @@ FunctionStudy clutch_study(std::size_t machines, std::vector<std::size_t> fixed 
                                                   {{2.5, .3, .04, .20}, {5, .045, .12, .25}},
                                                   {{4, .56, .08, .12}, {6, .16, .15, .25}, {.5, .88, .2, .4}}};
   for (std::size_t i = 0; i < processes.size(); ++i) {
-    AllocatedPart part = part_of(i, {});
+    allocation::AllocatedPart part = part_of(i, {});
     if (fixed.empty()) {
-      part.choice = AllocatedPart::Choice::processes;
+      part.choice = allocation::AllocatedPart::Choice::processes;
       for (const Range& one : processes[i]) {
         part.processes.push_back({std::to_string(part.processes.size() + 1), reciprocal(one.a, one.b), one.lo, one.hi});
       }
@@ -62,11 +62,11 @@ TEST(SharesWithinAPart, AreThoseOfItsErrors) {
     y[0] = 3.0 * x[0] + 4.0 * x[1] + 5.0 * x[3] + x[4];
   };
   FunctionStudy study(5, linear, 0.05, 2000);
-  AllocatedPart joined = part_of(0, reciprocal(0.0, 1.0));
+  allocation::AllocatedPart joined = part_of(0, reciprocal(0.0, 1.0));
   joined.factors = {FactorIndex(0), FactorIndex(1), FactorIndex(2)};
   study.asked().parts = {joined, part_of(3, reciprocal(0.0, 2.0))};
   study.study.errors.by_factor[4] = Distribution::normal(1e-4);  // an error of no part
-  const AllocationResult found = study.find();
+  const allocation::Result found = study.find();
   const auto& shares = found.error_mean_square_share;
   ASSERT_EQ(shares.size(), 5u);
   const double of_part = found.mean_square_share(0);
@@ -85,7 +85,7 @@ TEST(SharesWithinALimit, StateWhatIsInNoPart) {
   FunctionStudy study(3, linear, 0.05, 2000);
   study.asked().parts = {part_of(0, reciprocal(0.0, 1.0)), part_of(1, reciprocal(0.0, 2.0))};
   study.study.errors.by_factor[2] = Distribution::normal(2e-3);  // an error of no part
-  const AllocationResult found = study.find();
+  const allocation::Result found = study.find();
   const double fixed = std::pow(2.0 * 2e-3, 2);
   const double of_parts = std::pow(3.0 * found.sigma(0), 2) + std::pow(4.0 * found.sigma(1), 2);
   EXPECT_NEAR(found.fixed_share(0), fixed / (fixed + of_parts), 1e-9);
@@ -94,8 +94,8 @@ TEST(SharesWithinALimit, StateWhatIsInNoPart) {
 }
 
 TEST(OverrunningClutch, HasTheLeastCostOfTheLiterature) {
-  const AllocationResult found = clutch_study(148'000).find();
-  const AllocationStage& linear = found.stages.front();
+  const allocation::Result found = clutch_study(148'000).find();
+  const allocation::AllocationStage& linear = found.stages.front();
   EXPECT_NEAR(linear.cost, 24.462426, 3e-6);
   EXPECT_LE(linear.lower_bound, linear.cost);
   EXPECT_GT(linear.lower_bound, linear.cost * (1.0 - 1e-6));
@@ -104,7 +104,7 @@ TEST(OverrunningClutch, HasTheLeastCostOfTheLiterature) {
 }
 
 TEST(OverrunningClutch, HasTheLeastCostWithoutBounds) {
-  const AllocationResult found = clutch_study(2000, {3, 2, 1, 3}).find();
+  const allocation::Result found = clutch_study(2000, {3, 2, 1, 3}).find();
   EXPECT_NEAR(found.stages.front().cost, 24.42989011, 3e-6);
   const std::vector<double> best{.17859228, .17069998, .13191761, .18931314};
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(found.stage_tolerance(0, i), best[i], 1e-7) << i;
@@ -113,8 +113,8 @@ TEST(OverrunningClutch, HasTheLeastCostWithoutBounds) {
 // The yield at the linear model's tolerances is 0.99486. The test allows 4.4 standard errors of n machines (alpha =
 // 1e-5).
 TEST(OverrunningClutch, IsRepairedByItsMachines) {
-  const AllocationResult found = clutch_study(148'000).find();
-  const auto tried = std::ranges::find(found.stages, "tried on machines", &AllocationStage::name);
+  const allocation::Result found = clutch_study(148'000).find();
+  const auto tried = std::ranges::find(found.stages, "tried on machines", &allocation::AllocationStage::name);
   ASSERT_NE(tried, found.stages.end());
   const double n = static_cast<double>(tried->machines);
   EXPECT_NEAR(static_cast<double>(tried->rejects) / n, 1.0 - 0.99486, 4.4 * std::sqrt(0.00514 / n) + 5e-6);
@@ -138,7 +138,7 @@ TEST(OverrunningClutch, IsCertifiedWithOtherSeedsToo) {
 }
 
 TEST(OverrunningClutch, AnyPartMadeCoarserAloneBreaksTheYield) {
-  const AllocationResult found = clutch_study(148'000).find();
+  const allocation::Result found = clutch_study(148'000).find();
   const double most = 1.0 - static_cast<double>(found.design_most) / static_cast<double>(found.design_machines);
   std::size_t judged = 0;
   for (std::size_t i = 0; i < found.parts(); ++i) {
@@ -153,7 +153,7 @@ TEST(OverrunningClutch, AnyPartMadeCoarserAloneBreaksTheYield) {
 // Since the one response is normal, its yield depends only on this sum, so the same t_i are optimal for the yield.
 TEST(ToleranceSearch, SharesALinearLimitAsTheClosedForm) {
   const FunctionStudy study = weighted_sum_study();
-  const AllocationResult found = study.find();
+  const allocation::Result found = study.find();
   EXPECT_TRUE(found.certified());
   std::vector<double> best;
   double square = 0.0;
@@ -174,14 +174,14 @@ TEST(ToleranceSearch, SharesALinearLimitAsTheClosedForm) {
 
 // The design uses all rejects that it may have, so no part alone can be coarser, not even one with little effect.
 TEST(ToleranceSearch, LeavesNoRejectUnused) {
-  const AllocationResult found = weighted_sum_study().find();
+  const allocation::Result found = weighted_sum_study().find();
   EXPECT_EQ(found.design_rejects, found.design_most);
   const double most = 1.0 - static_cast<double>(found.design_most) / static_cast<double>(found.design_machines);
   for (std::size_t i = 0; i < found.parts(); ++i) EXPECT_LT(found.coarser_yield(i), most) << found.part_names[i];
 }
 
 /// Number of parts that could be coarser without breaking the yield of the design.
-std::size_t idle_parts(const AllocationResult& found) {
+std::size_t idle_parts(const allocation::Result& found) {
   const double most = 1.0 - static_cast<double>(found.design_most) / static_cast<double>(found.design_machines);
   return static_cast<std::size_t>(std::ranges::count_if(found.coarser_yield, [&](double one) { return one >= most; }));
 }
@@ -198,7 +198,7 @@ TEST(ToleranceSearch, LeavesNoPartCoarserThatHardlyActs) {
   for (std::size_t i = 0; i < 2 + kSmall; ++i) {
     study.asked().parts.push_back(part_of(i, reciprocal(0.0, i < 2 ? 1.0 : 1e-5)));
   }
-  const AllocationResult found = study.find();
+  const allocation::Result found = study.find();
   EXPECT_TRUE(found.certified());
   EXPECT_LT(found.mean_square_share.all().back(), 1e-4);
   EXPECT_EQ(idle_parts(found), 0u);
@@ -215,9 +215,9 @@ TEST(ToleranceSearch, MakesAPartThatDoesNothingCoarse) {
     study.asked().yield = 0.99;
     for (std::size_t i = 0; i < 3; ++i) study.asked().parts.push_back(part_of(i, reciprocal(0.0, 1.0)));
     study.asked().parts.back().hi = 0.7;
-    const AllocationResult found = study.find();
+    const allocation::Result found = study.find();
     EXPECT_EQ(found.tolerance(2), 0.7);
-    EXPECT_EQ(found.bound(2), AllocationResult::kWithoutEffect);
+    EXPECT_EQ(found.bound(2), allocation::Result::kWithoutEffect);
     EXPECT_EQ(idle_parts(found), 0u);
     EXPECT_EQ(found.design_rejects, found.design_most);
     if (found.stages.back().name == "coarser where nothing breaks") {
@@ -236,7 +236,7 @@ TEST(ToleranceSearch, KnowsThatALimitWithRoomDependsOnAPart) {
   FunctionStudy study(2, function, 0.3, 20'000);
   for (std::size_t i = 0; i < 2; ++i) study.asked().parts.push_back(part_of(i, reciprocal(0.0, 1.0)));
   study.asked().parts.back().hi = 0.7;
-  const AllocationResult found = study.run(2, {0.2, 0.8}).as<AllocationResult>();
+  const allocation::Result found = study.run(2, {0.2, 0.8}).as<allocation::Result>();
   EXPECT_EQ(found.tolerance(1), 0.7);
   EXPECT_EQ(found.mean_square_share(1), 0.0);
   EXPECT_EQ(found.bound(1), static_cast<std::uint8_t>(AtBound::upper));
@@ -244,8 +244,8 @@ TEST(ToleranceSearch, KnowsThatALimitWithRoomDependsOnAPart) {
 
 TEST(ToleranceSearch, FindsTheSameOnAnyNumberOfThreads) {
   const FunctionStudy study = weighted_sum_study(20'000);
-  const AllocationResult one = study.find(1);
-  const AllocationResult three = study.find(3);
+  const allocation::Result one = study.find(1);
+  const allocation::Result three = study.find(3);
   EXPECT_EQ(one.tolerance, three.tolerance);
   EXPECT_EQ(one.certificate.rejects, three.certificate.rejects);
   EXPECT_EQ(one.coarser_yield, three.coarser_yield);
@@ -255,7 +255,7 @@ TEST(ToleranceSearch, FindsTheSameOnAnyNumberOfThreads) {
 TEST(ToleranceSearch, GivesAStudyThatRepeatsItsCertificate) {
   const FunctionStudy study = weighted_sum_study(20'000);
   const StudyResult result = study.run();
-  const AllocationResult& found = result.as<AllocationResult>();
+  const allocation::Result& found = result.as<allocation::Result>();
   ASSERT_TRUE(result.confirming);
   EXPECT_NE(result.confirming->seed, study.study.seed);
   const auto repeated = run_study(*result.confirming, study.model, PoseSet(1, {0.5}), {.threads = 2});
@@ -267,8 +267,8 @@ TEST(ToleranceSearch, GivesAStudyThatRepeatsItsCertificate) {
 
 TEST(ToleranceSearch, GivesEqualEffectEqualShares) {
   FunctionStudy study = weighted_sum_study(20'000);
-  study.asked().aim = Aim::equal_effect;
-  const AllocationResult found = study.find();
+  study.asked().aim = allocation::Aim::equal_effect;
+  const allocation::Result found = study.find();
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(found.mean_square_share(i), 1.0 / 3.0, 1e-9);
     EXPECT_NEAR(found.tolerance(i) * kCoefficients[i], found.tolerance(0) * kCoefficients[0], 1e-9);
@@ -278,9 +278,9 @@ TEST(ToleranceSearch, GivesEqualEffectEqualShares) {
 
 TEST(ToleranceSearch, TakesTheLargestCommonFactor) {
   FunctionStudy study = weighted_sum_study(20'000);
-  study.asked().aim = Aim::common_factor;
+  study.asked().aim = allocation::Aim::common_factor;
   study.study.errors.by_factor[1] = Distribution::normal(0.15);
-  const AllocationResult found = study.find();
+  const allocation::Result found = study.find();
   EXPECT_NEAR(found.tolerance(1), 3.0 * found.tolerance(0), 1e-9 * found.tolerance(1));
   EXPECT_NEAR(found.tolerance(2), found.tolerance(0), 1e-9 * found.tolerance(0));
 }
@@ -288,12 +288,12 @@ TEST(ToleranceSearch, TakesTheLargestCommonFactor) {
 TEST(ToleranceSearch, KeepsTheShapeOfErrorsAndTheirShift) {
   FunctionStudy study = weighted_sum_study(20'000);
   study.study.errors.by_factor[0] = Distribution::uniform(0.1);
-  for (AllocatedPart& part : study.asked().parts) {
+  for (allocation::AllocatedPart& part : study.asked().parts) {
     part.sigmas = std::sqrt(3.0);
     part.shift = 0.1;
   }
   const StudyResult result = study.run();
-  const AllocationResult& found = result.as<AllocationResult>();
+  const allocation::Result& found = result.as<allocation::Result>();
   const Distribution& first = result.confirming->errors.by_factor[0];
   EXPECT_EQ(first.shape(), Distribution::Shape::uniform);
   EXPECT_NEAR(first.half_width() + first.shift(), found.tolerance(0), 1e-12);
@@ -303,11 +303,11 @@ TEST(ToleranceSearch, KeepsTheShapeOfErrorsAndTheirShift) {
 
 TEST(ToleranceSearch, ChoosesAmongValuesThatCanBeHad) {
   FunctionStudy study = weighted_sum_study(20'000);
-  for (AllocatedPart& part : study.asked().parts) {
-    part.choice = AllocatedPart::Choice::values;
+  for (allocation::AllocatedPart& part : study.asked().parts) {
+    part.choice = allocation::AllocatedPart::Choice::values;
     part.values = {0.05, 0.1, 0.2, 0.3, 0.5, 0.8, 1.2, 2.0};
   }
-  const AllocationResult found = study.find();
+  const allocation::Result found = study.find();
   EXPECT_TRUE(found.certified());
   for (std::size_t i = 0; i < 3; ++i) {
     const auto& values = study.asked().parts[i].values;
@@ -327,7 +327,7 @@ TEST(ToleranceSearch, SeesErrorsThatActThroughOthers) {
     study.asked().parts.push_back(part_of(i, reciprocal(0.0, i == 0 ? 1.0 : 0.1)));
     study.asked().parts.back().hi = 5.0;
   }
-  const AllocationResult found = study.find();
+  const allocation::Result found = study.find();
   EXPECT_TRUE(found.certified());
   EXPECT_LT(found.tolerance(1), 0.5);
 }
@@ -342,9 +342,9 @@ TEST(ToleranceSearch, MakesFinerWhatMeanSquaresDoNotSee) {
   FunctionStudy study(2, function, 0.3, 149'000);
   for (std::size_t i = 0; i < 2; ++i) study.asked().parts.push_back(part_of(i, reciprocal(0.0, 1.0)));
   study.asked().parts.back().hi = 1.0;
-  const AllocationResult found = study.find();
+  const allocation::Result found = study.find();
   EXPECT_TRUE(found.certified());
-  const auto alike = std::ranges::find(found.stages, "finer where machines fail", &AllocationStage::name);
+  const auto alike = std::ranges::find(found.stages, "finer where machines fail", &allocation::AllocationStage::name);
   ASSERT_NE(alike, found.stages.end());
   // If only the first part used up the allowed rejects it would cost 1 / 0.3, and the second part 1 / 0.95.
   EXPECT_GT(found.total_cost, 1.0 / 0.3 + 1.0 / 0.95);
@@ -370,7 +370,7 @@ TEST(ToleranceSearch, RefusesALimitBelowWhatOtherErrorsGive) {
 
 /// Expects that the response has the standard deviation at which the design's allowed share of rejects exceeds 1 on one
 /// side.
-void expect_deviation_by_one_end(const AllocationResult& found) {
+void expect_deviation_by_one_end(const allocation::Result& found) {
   double variance = 0.0;
   for (std::size_t i = 0; i < 3; ++i) variance += std::pow(kCoefficients[i] * found.sigma(i), 2);
   const double z =
@@ -385,7 +385,7 @@ TEST(ToleranceSearch, KeepsALimitWithTwoEnds) {
   FunctionStudy study = weighted_sum_study();
   study.study.analysis.limits = {{0, ValueLimit::between(-1.0, 3.0)}};
   const StudyResult result = study.run();
-  const AllocationResult& found = result.as<AllocationResult>();
+  const allocation::Result& found = result.as<allocation::Result>();
   expect_deviation_by_one_end(found);
   EXPECT_EQ(result.verdicts->limits.at(0).limit, ValueLimit::between(-1.0, 3.0));
   FunctionStudy moved(
@@ -397,7 +397,7 @@ TEST(ToleranceSearch, KeepsALimitWithTwoEnds) {
       1.0, 200'000);
   moved.asked() = study.asked();
   moved.study.analysis.limits = {{0, ValueLimit::between(1.0, 5.0)}};
-  const AllocationResult same = moved.find();
+  const allocation::Result same = moved.find();
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(same.tolerance(i), found.tolerance(i), 1e-3 * found.tolerance(i));
   moved.study.analysis.limits = {{0, ValueLimit::between(-1.0, 1.5)}};
   EXPECT_NE(refusal_of(moved).find("without the errors of the parts it is 2"), std::string::npos) << refusal_of(moved);
@@ -407,17 +407,18 @@ TEST(ToleranceSearch, KeepsALimitWithTwoEnds) {
 TEST(ToleranceSearch, KeepsALimitWithOneEnd) {
   FunctionStudy study = weighted_sum_study();
   study.study.analysis.limits = {{0, ValueLimit::between(-std::numeric_limits<double>::infinity(), 1.0)}};
-  const AllocationResult found = study.find();
+  const allocation::Result found = study.find();
   expect_deviation_by_one_end(found);
 }
 
 TEST(ToleranceSearch, RefusesLowestTolerancesThatAreTooCoarse) {
   FunctionStudy study = weighted_sum_study(20'000);
-  for (AllocatedPart& part : study.asked().parts) part.lo = 1.0;
+  for (allocation::AllocatedPart& part : study.asked().parts) part.lo = 1.0;
   EXPECT_NE(refusal_of(study).find("with every tolerance at its lowest the root mean square is 1.067"),
             std::string::npos)
       << refusal_of(study);
-  for (AllocatedPart& part : study.asked().parts) part.lo = 0.5;  // the rms is then 0.534, too much for a yield of 99 %
+  for (allocation::AllocatedPart& part : study.asked().parts)
+    part.lo = 0.5;  // the rms is then 0.534, too much for a yield of 99 %
   EXPECT_NE(refusal_of(study).find("99 % of the machines within the limits cannot be reached"), std::string::npos)
       << refusal_of(study);
 }
@@ -431,10 +432,11 @@ TEST(ToleranceSearch, RefusesAPartWithoutEffectAndBound) {
       << refusal_of(study);
 }
 
-MeanSquares squares_of(std::size_t errors, ErrorFunction function, std::size_t draws, std::vector<double> places) {
+allocation::MeanSquares squares_of(std::size_t errors, ErrorFunction function, std::size_t draws,
+                                   std::vector<double> places) {
   FunctionStudy study(errors, std::move(function), 1.0, 1000);
   const Plan plan(study.study, PoseSet(1, std::move(places)));
-  return *mean_squares(plan, study.model, study.study.analysis.limits, draws, {.threads = 2});
+  return *allocation::mean_squares(plan, study.model, study.study.analysis.limits, draws, {.threads = 2});
 }
 
 TEST(MeanSquaresOf, LinearFunctionsAreExact) {
@@ -443,7 +445,7 @@ TEST(MeanSquaresOf, LinearFunctionsAreExact) {
     y[0] = 0.01;
     for (std::size_t p = 0; p < x.size(); ++p) y[0] += (1.0 + place) * (1.0 + static_cast<double>(p)) * x[p];
   };
-  const MeanSquares found = squares_of(kErrors, function, 20, {0.0, 1.0});
+  const allocation::MeanSquares found = squares_of(kErrors, function, 20, {0.0, 1.0});
   for (std::size_t m = 0; m < 2; ++m) {
     double value = 1e-4;
     for (std::size_t p = 0; p < kErrors; ++p) {
@@ -464,7 +466,8 @@ TEST(MeanSquaresOf, ErrorsWithMeansAreExact) {
   study.study.errors.by_factor[0] = Distribution::normal(0.05).about(0.2);
   study.study.errors.by_factor[1] = Distribution::uniform(0.1).about(-0.3);
   const Plan plan(study.study, PoseSet(1, {0.5}));
-  const MeanSquares found = *mean_squares(plan, study.model, study.study.analysis.limits, 20, {.threads = 2});
+  const allocation::MeanSquares found =
+      *allocation::mean_squares(plan, study.model, study.study.analysis.limits, 20, {.threads = 2});
   const double mean = 0.01 + 0.2 - 0.6;
   EXPECT_NEAR(found.value[0], mean * mean + 0.0025 + 4.0 * 0.01 / 3.0 + 0.0025, 1e-12);
   for (std::size_t p = 0; p < 3; ++p) EXPECT_NEAR(found.slope[p], p == 1 ? 4.0 : 1.0, 1e-9) << p;
@@ -477,7 +480,7 @@ TEST(MeanSquaresOf, ErrorsThatActTogetherCountForEach) {
   const auto function = [](std::span<const double> x, double, std::span<double> y) {
     y[0] = x[0] + 10.0 * x[1] * x[2];
   };
-  const MeanSquares found = squares_of(3, function, 4000, {0.5});
+  const allocation::MeanSquares found = squares_of(3, function, 4000, {0.5});
   const double square = 0.05 * 0.05;
   const double tolerance = 4.5 * std::sqrt(2.0 / 4000.0);
   EXPECT_NEAR(found.slope[0], 1.0, 1e-9);

@@ -30,15 +30,16 @@ void function(std::span<const double> x, double place, std::span<double> y) {
 
 struct VariedStudy {
   VariedStudy() : model(kErrors, {"y", "z"}, function), entry{model.description(), nullptr} {
-    study = function_study(entry, kAllocationStudy, Distribution::normal(0.3), 450);
+    study = function_study(entry, allocation::kStudy, Distribution::normal(0.3), 450);
     study.analysis.draws = Draws::per_machine;
     study.analysis.limits = {{0, 1.0}, {1, 1.0}};
   }
   Plan plan() const { return Plan(study, PoseSet(1, kPlaces)); }
-  std::vector<double> varied(const std::vector<Variation>& variations, std::size_t threads = 2) const {
+  std::vector<double> varied(const std::vector<allocation::Variation>& variations, std::size_t threads = 2) const {
     std::vector<std::uint32_t> machines;
     for (std::uint32_t s = 0; s < 450; s += 2) machines.push_back(s);
-    return *try_variations(plan(), model, study.analysis.limits, machines, variations, {.threads = threads});
+    return *allocation::try_variations(plan(), model, study.analysis.limits, machines, variations,
+                                       {.threads = threads});
   }
 
   FunctionModel model;
@@ -46,8 +47,8 @@ struct VariedStudy {
   Study study;
 };
 
-std::vector<Variation> variations() {
-  std::vector<Variation> list;
+std::vector<allocation::Variation> variations() {
+  std::vector<allocation::Variation> list;
   for (std::size_t p = 0; p < kErrors; ++p) {
     for (const double factor : {1.05, 2.0}) list.push_back({{p, factor}});
   }
@@ -58,7 +59,7 @@ std::vector<Variation> variations() {
 
 TEST(TryVariations, ChangesErrorsAsATolerance) {
   const VariedStudy study;
-  const std::vector<Variation> list = variations();
+  const std::vector<allocation::Variation> list = variations();
   const std::vector<double> found = study.varied(list);
   ASSERT_EQ(found.size(), list.size() * 225);
   for (std::size_t v = 0; v < list.size(); ++v) {
@@ -66,7 +67,8 @@ TEST(TryVariations, ChangesErrorsAsATolerance) {
     for (const auto& [p, factor] : list[v]) {
       other.study.errors.by_factor[p] = Distribution::normal(0.3 * std::abs(factor));
     }
-    const auto whole = machine_loads(other.plan(), other.model, other.study.analysis.limits, {.threads = 1});
+    const auto whole =
+        allocation::machine_loads(other.plan(), other.model, other.study.analysis.limits, {.threads = 1});
     // The factor -1 for all errors leaves the loads as they are, because y changes only its sign and z is unchanged.
     for (std::size_t k = 0; k < 225; ++k) EXPECT_NEAR(found[v * 225 + k], whole->load[2 * k], 1e-9) << v;
   }
@@ -75,7 +77,7 @@ TEST(TryVariations, ChangesErrorsAsATolerance) {
 TEST(TryVariations, KeepErrorsThatAreDrawnAnewAtEachPose) {
   VariedStudy study;
   study.study.errors.per_pose = {FactorIndex(2)};
-  const std::vector<Variation> list{{{0, 1.05}}, {{0, 2.0}, {1, 1.5}}, {{1, 1.05}, {3, 1.05}}};
+  const std::vector<allocation::Variation> list{{{0, 1.05}}, {{0, 2.0}, {1, 1.5}}, {{1, 1.05}, {3, 1.05}}};
   const std::vector<double> found = study.varied(list);
   for (std::size_t v = 0; v < list.size(); ++v) {
     VariedStudy other;
@@ -83,7 +85,8 @@ TEST(TryVariations, KeepErrorsThatAreDrawnAnewAtEachPose) {
     for (const auto& [p, factor] : list[v]) {
       other.study.errors.by_factor[p] = Distribution::normal(0.3 * factor);
     }
-    const auto whole = machine_loads(other.plan(), other.model, other.study.analysis.limits, {.threads = 1});
+    const auto whole =
+        allocation::machine_loads(other.plan(), other.model, other.study.analysis.limits, {.threads = 1});
     for (std::size_t k = 0; k < 225; ++k) EXPECT_NEAR(found[v * 225 + k], whole->load[2 * k], 1e-9) << v;
   }
 }
@@ -94,7 +97,7 @@ TEST(MachineLoads, AreThoseOfErrorsDrawnAnewAtEachPose) {
   VariedStudy study;
   study.study.errors.per_pose = {FactorIndex(0), FactorIndex(2)};
   const Plan plan = study.plan();
-  const auto found = machine_loads(plan, study.model, study.study.analysis.limits, {.threads = 2});
+  const auto found = allocation::machine_loads(plan, study.model, study.study.analysis.limits, {.threads = 2});
   for (std::size_t s = 0; s < 450; ++s) {
     double load = 0.0;
     for (std::size_t m = 0; m < kPlaces.size(); ++m) {

@@ -56,7 +56,7 @@ Study read(const std::string& parts, const std::string& scatter = "sigmas = 3") 
   return study_of_text(study_text(parts, scatter), "study.toml", catalog(), StudyUse::run);
 }
 
-std::vector<AllocatedPart> parts_of(const Study& study) { return asked_of<AllocationOptions>(study.analysis).parts; }
+std::vector<AllocatedPart> parts_of(const Study& study) { return asked_of<Options>(study.analysis).parts; }
 
 /// A search at the three poses of the other program.
 struct ZoneSearch {

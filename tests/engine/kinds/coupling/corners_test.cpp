@@ -52,10 +52,10 @@ class PartlySolved final : public FunctionModel {
 };
 
 /// Two sources of errors: the first half and the second half of the errors. Each error is a block of its own.
-CouplingStudy halves(const Model& model, std::vector<double> sizes = {kSize}) {
-  CouplingStudy study{std::move(sizes), {}, {}, {}};
-  study.pattern.limbs = ErrorPattern::Choice::independent;
-  study.pattern.components = ErrorPattern::Choice::independent;
+coupling::Options halves(const Model& model, std::vector<double> sizes = {kSize}) {
+  coupling::Options study{std::move(sizes), {}, {}, {}};
+  study.pattern.limbs = coupling::ErrorPattern::Choice::independent;
+  study.pattern.components = coupling::ErrorPattern::Choice::independent;
   study.sources = {{"A", {}}, {"B", {}}};
   const std::size_t errors = model.description().factors.size();
   for (std::size_t p = 0; p < errors; ++p) study.sources[p < errors / 2 ? 0 : 1].factors.emplace_back(p);
@@ -76,19 +76,19 @@ double largest_of_all_corners(const FunctionModel& model, double pose, double si
 }
 
 struct Search {
-  explicit Search(const Model& searched, const CouplingStudy& asked)
+  explicit Search(const Model& searched, const coupling::Options& asked)
       : study(asked),
         table(study, searched.description()),
-        rounding(coupling_rounding(study, searched)),
+        rounding(coupling::coupling_rounding(study, searched)),
         search(searched, {}, poses, table, rounding) {}
 
-  WorstCorners all(std::size_t pose = 0, std::size_t size = 0) { return search(pose, size).subsets.back(); }
+  coupling::WorstCorners all(std::size_t pose = 0, std::size_t size = 0) { return search(pose, size).subsets.back(); }
 
-  CouplingStudy study;
+  coupling::Options study;
   PoseSet poses{1, {0.25, 0.75}};
-  CornerTable table;
+  coupling::CornerTable table;
   Array<double, axis::Response, axis::Size> rounding;
-  CornerSearch search;
+  coupling::CornerSearch search;
 };
 
 /// y = sum of (a_p + pose) x_p + b_p x_p x_(p+1). If |a_p + pose| >= 3 |b| size, the first-order signs give the worst
@@ -104,12 +104,12 @@ ErrorFunction bilinear(std::vector<double> a, std::vector<double> b) {
 
 TEST(CornerTable, HasTheBlocksOfEachSubsetAndTheirErrors) {
   const FunctionModel model(4, {"y"}, bilinear({1, 1, 1, 1}, {0, 0, 0, 0}));
-  const CornerTable each(halves(model), model.description());
+  const coupling::CornerTable each(halves(model), model.description());
   EXPECT_EQ(each.subsets, (std::vector<std::vector<std::size_t>>{{0, 1}, {2, 3}, {0, 1, 2, 3}}));
   EXPECT_EQ(each.signs_of_errors(1, "+-"), (std::vector{0.0, 0.0, 1.0, -1.0}));
-  CouplingStudy together = halves(model);
+  coupling::Options together = halves(model);
   together.pattern = {};
-  const CornerTable sources(together, model.description());
+  const coupling::CornerTable sources(together, model.description());
   EXPECT_EQ(sources.subsets, (std::vector<std::vector<std::size_t>>{{0}, {1}, {0, 1}}));
   EXPECT_EQ(sources.signs_of_errors(2, "-+"), (std::vector{-1.0, -1.0, 1.0, 1.0}));
 }
@@ -124,7 +124,7 @@ TEST(CornerSearch, OfALinearResponseIsTheFirstOrderSum) {
     for (const std::size_t size : {0U, 1U}) {
       double sum = 0.0;
       for (const double one : a) sum += std::abs(one + search.poses[PoseIndex(pose)][0]);
-      const WorstCorners found = search.all(pose, size);
+      const coupling::WorstCorners found = search.all(pose, size);
       EXPECT_NEAR(found.value[0], sum * (size == 0 ? kSize : 2.0 * kSize), 1e-16);
       EXPECT_TRUE(found.signs[0] == "+-+-+-" || found.signs[0] == "-+-+-+") << found.signs[0];
       EXPECT_EQ(found.unsolved, 0u);
@@ -167,17 +167,17 @@ TEST(CornerSearch, EndsWhereNoFlipIsWorse) {
     for (int p = 0; p < 8; ++p) a.push_back(uniform(random));
     for (int p = 0; p < 8; ++p) b.push_back(2.0 * uniform(random) / kSize);
     const FunctionModel model(8, {"y"}, bilinear(a, b));
-    const WorstCorners found = Search(model, halves(model)).all();
-    const auto value = [&](const Signs& signs) {
+    const coupling::WorstCorners found = Search(model, halves(model)).all();
+    const auto value = [&](const coupling::Signs& signs) {
       std::vector<double> x, y(1);
       for (const char sign : signs) x.push_back(sign == '+' ? kSize : -kSize);
       model.function()(x, 0.25, y);
       return std::abs(y[0]);
     };
     EXPECT_EQ(found.value[0], value(found.signs[0]));
-    Signs first;
+    coupling::Signs first;
     for (std::size_t p = 0; p < 8; ++p) {
-      Signs flipped = found.signs[0];
+      coupling::Signs flipped = found.signs[0];
       flipped[p] = flipped[p] == '+' ? '-' : '+';
       EXPECT_LE(value(flipped), found.value[0]);
       first += a[p] + 0.25 < 0.0 ? '-' : '+';
@@ -198,7 +198,7 @@ TEST(CornerSearch, OfANormBeginsAtTheCornersOfOthers) {
     for (std::size_t p = 0; p < 4; ++p) y[1] += a[p] * x[p];
     y[0] = std::abs(y[1]);
   });
-  const WorstCorners found = Search(model, halves(model)).all();
+  const coupling::WorstCorners found = Search(model, halves(model)).all();
   EXPECT_NEAR(found.value[0], 4.0 * kSize, 1e-18);
 }
 
@@ -207,7 +207,7 @@ TEST(CornerSearch, DoesNotFollowRounding) {
   const FunctionModel model(6, {"y"}, [](std::span<const double> x, double, std::span<double> y) {
     y[0] = 1e-19 * std::sin(1e7 * (x[0] - 2.0 * x[3]));
   });
-  const WorstCorners found = Search(model, halves(model)).all();
+  const coupling::WorstCorners found = Search(model, halves(model)).all();
   EXPECT_LE(found.tried, 3u);
   EXPECT_LE(found.value[0], 1e-19);
 }
@@ -216,13 +216,13 @@ TEST(CornerSearch, DoesNotFollowRounding) {
 /// no solution. All other corners have one, and the worst of them is ---- (-4 sizes).
 TEST(CornerSearch, NamesCornersThatHaveNoSolution) {
   const PartlySolved model(4, bilinear(std::vector(4, 0.75), std::vector(4, 0.0)), std::vector(4, 1.0), 2.5 * kSize);
-  const WorstCorners found = Search(model, halves(model)).all();
+  const coupling::WorstCorners found = Search(model, halves(model)).all();
   EXPECT_EQ(found.unsolved, 1u);
   EXPECT_EQ(found.first_unsolved, "++++");
   EXPECT_NEAR(found.value[0], 4.0 * kSize, 1e-18);
   EXPECT_EQ(found.signs[0], "----");
   const PartlySolved nothing(4, bilinear(std::vector(4, 1.0), std::vector(4, 0.0)), std::vector(4, 0.0), -1.0);
-  const WorstCorners none = Search(nothing, halves(nothing)).all();
+  const coupling::WorstCorners none = Search(nothing, halves(nothing)).all();
   EXPECT_EQ(none.unsolved, none.tried);
   EXPECT_TRUE(std::isnan(none.value[0]));
   EXPECT_EQ(none.signs[0], "");
@@ -235,12 +235,12 @@ TEST(WorstCases, AreOfAllPosesInAStudy) {
   entry.description = model.description();
   Study study;
   study.mechanism.entry = &entry;
-  study.analysis.kind = &kCouplingStudy;
+  study.analysis.kind = &coupling::kStudy;
   study.analysis.asked = halves(model);
-  study.analysis.factors = coupling_factors(halves(model), entry.description);
+  study.analysis.factors = coupling::coupling_factors(halves(model), entry.description);
   const PoseSet poses(1, {0.25, 0.75, 0.5});
   const StudyResult result = run_study(study, model, poses, {1, {}, {}}).value();
-  const auto& found = result.as<CouplingResult>();
+  const auto& found = result.as<coupling::Result>();
   const auto sum_at = [](double pose) { return (1.0 + pose + 1.0 - pose + 2.0 + pose + 2.0 - pose) * kSize; };
   for (std::size_t m = 0; m < 3; ++m) {
     EXPECT_NEAR(found.first_order_sum(0, 0, 2, m), sum_at(poses[PoseIndex(m)][0]), 1e-17);

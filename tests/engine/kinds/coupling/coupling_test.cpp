@@ -10,7 +10,7 @@
 #include "tests/support/elements.h"
 #include "tests/support/fake_model.h"
 
-namespace poesy {
+namespace poesy::coupling {
 namespace {
 
 using Choice = ErrorPattern::Choice;
@@ -42,7 +42,7 @@ EvaluationResult evaluation_of(const ErrorTable& table, std::size_t factors, std
 }
 
 /// The rounding thresholds for responses that are computed without rounding errors.
-Array<double, axis::Response, axis::Size> rounding_of(const CouplingStudy& study, std::size_t responses) {
+Array<double, axis::Response, axis::Size> rounding_of(const Options& study, std::size_t responses) {
   Array<double, axis::Response, axis::Size> rounding({responses, study.sizes()});
   for (std::size_t r = 0; r < responses; ++r) {
     for (std::size_t z = 0; z < study.sizes(); ++z) rounding(r, z) = size_rounding(0.0, study.linear[z], 0.0);
@@ -74,17 +74,17 @@ class CouplingOfSixErrors : public testing::Test {
     return 3.0 * e[0] - 1.0 * e[1] + 4.0 * e[3] - 2.0 * e[4] + q * e[2] + 7.0 * e[0] * e[5];
   }
 
-  CouplingResult solve(const std::vector<Effect>& responses) const {
+  Result solve(const std::vector<Effect>& responses) const {
     return coupling_result(evaluation_of(coupling_table(study_, model_), 6, kPoses, responses), study_, model_,
                            NotConverged::exclude, rounding_of(study_, responses.size()));
   }
 
   ModelDescription model_;
-  CouplingStudy study_;
+  Options study_;
 };
 
 TEST_F(CouplingOfSixErrors, HasClosedFormsWhereBlocksAreSources) {
-  const CouplingResult found = solve({bilinear});
+  const Result found = solve({bilinear});
   ASSERT_EQ(found.effect.size(), 18u);
   const double q[] = {-5.0, -2.0, 1.0};
   for (std::size_t z = 0; z < 2; ++z) {
@@ -106,7 +106,7 @@ TEST_F(CouplingOfSixErrors, HasClosedFormsWhereBlocksAreSources) {
 }
 
 TEST_F(CouplingOfSixErrors, SumsUpOverThePoses) {
-  const CouplingResult found = solve({bilinear});
+  const Result found = solve({bilinear});
   const double e = kSize;
   EXPECT_EQ(found.count(0, 0, 2), kPoses);
   EXPECT_NEAR(found.effect_max(0, 0, 2), 5.0 * e + 7.0 * e * e, 1e-17);
@@ -124,7 +124,7 @@ TEST_F(CouplingOfSixErrors, SumsUpOverThePoses) {
 TEST_F(CouplingOfSixErrors, TakesBlocksOnTheirOwnInTheFirstOrderSum) {
   const auto worst_of_a = [&](Choice limbs, Choice components) {
     study_.pattern = {limbs, 0, components, {}};
-    const CouplingResult found = solve({bilinear});
+    const Result found = solve({bilinear});
     EXPECT_NEAR(found.effect(0, 0, 0, 1), 4.0 * kSize, 1e-17);  // for every pattern
     return std::pair(found.first_order_sum(0, 0, 0, 1) / kSize, found.root_sum_square(0, 0, 0, 1) / kSize);
   };
@@ -139,7 +139,7 @@ TEST_F(CouplingOfSixErrors, TakesBlocksOnTheirOwnInTheFirstOrderSum) {
 }
 
 TEST_F(CouplingOfSixErrors, KnowsNoOppositionWhereAResponseIsANorm) {
-  const CouplingResult found = solve({[](auto errors, std::size_t m) { return std::abs(bilinear(errors, m)); }});
+  const Result found = solve({[](auto errors, std::size_t m) { return std::abs(bilinear(errors, m)); }});
   for (std::size_t m = 0; m < kPoses; ++m) {
     EXPECT_EQ(found.cancellation(0, 0, 2, m), 0.0);
     EXPECT_EQ(found.sum(0, 0, 2, m), found.first_order_sum(0, 0, 2, m));
@@ -149,7 +149,7 @@ TEST_F(CouplingOfSixErrors, KnowsNoOppositionWhereAResponseIsANorm) {
 }
 
 TEST_F(CouplingOfSixErrors, TakesRoundingForNothing) {
-  const CouplingResult found =
+  const Result found =
       solve({[](std::span<const double> errors, std::size_t) { return 1e-12 * errors[0] - 1e-12 * errors[2]; }});
   EXPECT_EQ(found.cancellation(0, 0, 2, 0), 0.0);
   EXPECT_EQ(found.opposed_share(0, 0, 2), 0.0);
@@ -167,7 +167,7 @@ TEST_F(CouplingOfSixErrors, LeavesOutWhatDoesNotCount) {
   const auto found_with = [&](NotConverged policy) {
     return coupling_result(some, study_, model_, policy, rounding_of(study_, 1));
   };
-  const CouplingResult exclude = found_with(NotConverged::exclude);
+  const Result exclude = found_with(NotConverged::exclude);
   EXPECT_EQ(test::elements(exclude.count), (std::vector<std::uint64_t>{2, 2, 1, 2, 3, 2}));
   EXPECT_TRUE(std::isnan(exclude.effect(0, 0, 0, 0)));
   EXPECT_FALSE(std::isnan(exclude.effect(0, 0, 2, 0)));
@@ -184,7 +184,7 @@ TEST_F(CouplingOfSixErrors, LeavesOutWhatDoesNotCount) {
   EXPECT_EQ(exclude.solves(1, 2).not_converged(), 1u);
   EXPECT_EQ(exclude.total().total(), table.rows * kPoses);
   std::ranges::fill(some.status, SolveStatus::singular);
-  const CouplingResult nothing = found_with(NotConverged::include);
+  const Result nothing = found_with(NotConverged::include);
   EXPECT_TRUE(std::isnan(nothing.effect_max(0, 0, 0)));
   EXPECT_TRUE(std::isnan(nothing.opposed_share(0, 0, 0)));
   EXPECT_EQ(nothing.effect_max_pose(0, 0, 0), -1);
@@ -193,11 +193,11 @@ TEST_F(CouplingOfSixErrors, LeavesOutWhatDoesNotCount) {
 TEST(CouplingOfAMechanism, IsThatOfItsAbsoluteValues) {
   const test::FakeModel fake;
   const ModelDescription& model = fake.description();
-  CouplingStudy study{{1e-3}, {1e-2}, {}, {{"d", {FactorIndex(0)}}, {"e", {FactorIndex(1)}}, {"n", {FactorIndex(2)}}}};
+  Options study{{1e-3}, {1e-2}, {}, {{"d", {FactorIndex(0)}}, {"e", {FactorIndex(1)}}, {"n", {FactorIndex(2)}}}};
   const PoseSet poses(3, {-0.2, 0.1, 0.2, -0.25, 0.3, -0.1});
   const auto evaluation = run_evaluation(fake, {}, poses, coupling_table(study, model),
                                          Pairing::every_pose_with_every_row, {1, {}, {}}, Outcomes::responses);
-  const CouplingResult found =
+  const Result found =
       coupling_result(*evaluation, study, model, NotConverged::exclude, coupling_rounding(study, fake));
   ASSERT_EQ(found.subsets.size(), 7u);
   for (std::size_t r = 0; r < 2; ++r) {
@@ -218,4 +218,4 @@ TEST(SubsetNames, AreJoined) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::coupling

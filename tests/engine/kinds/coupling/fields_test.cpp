@@ -9,7 +9,7 @@
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 
-namespace poesy {
+namespace poesy::coupling {
 namespace {
 
 constexpr std::size_t kPoses = test::Example::kPoses;
@@ -21,7 +21,7 @@ class CouplingFile : public testing::Test {
   test::TempFolder folder_;
   test::Example example_;
   std::string path_;
-  CouplingResult found_;
+  Result found_;
 };
 
 /// Expects equal numbers. NaN equals NaN.
@@ -37,7 +37,7 @@ void expect_same(const Numbers& found, const Numbers& expected) {
 
 TEST_F(CouplingFile, IsReadBackAsItWas) {
   const StoredResult result = read_result(path_);
-  const CouplingResult& found = coupling_of(result);
+  const Result& found = coupling_of(result);
   EXPECT_EQ(result.kind, "coupling");
   EXPECT_EQ(found.size_names, (std::vector<std::string>{"0.1 mm", "0.2 mm"}));
   EXPECT_EQ(found.linear, found_.linear);
@@ -109,14 +109,14 @@ TEST_F(CouplingFile, IsExportedByPoseAndInSum) {
 
 /// A file of version 0.2.0 stores the first-order sum under the name of the worst case and has no corners.
 TEST_F(CouplingFile, OfVersion020HasTheFirstOrderSumAsWorstCase) {
-  CouplingResult older = example_.coupling();
-  const CouplingResult::Curves sum = older.worst_case;
+  Result older = example_.coupling();
+  const Result::Curves sum = older.worst_case;
   const auto clear = [](auto&... arrays) { (..., (arrays = {})); };
   clear(older.first_order_sum, older.first_order_sum_max, older.rounding, older.corners, older.unsolved_corners,
         older.worst_case_max_pose, older.worst_case_signs, older.unsolved_pose, older.unsolved_signs);
   write_result(path_, example_.study, example_.poses, older, example_.facts);
   const StoredResult stored = read_result(path_);
-  const CouplingResult& found = coupling_of(stored);
+  const Result& found = coupling_of(stored);
   EXPECT_FALSE(has_worst_cases(found));
   ASSERT_EQ(found.first_order_sum.size(), sum.size());
   EXPECT_EQ(found.first_order_sum(0, 0, 0, 0), sum(0, 0, 0, 0));
@@ -130,4 +130,4 @@ TEST_F(CouplingFile, OfVersion020HasTheFirstOrderSumAsWorstCase) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::coupling

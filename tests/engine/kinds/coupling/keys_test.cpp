@@ -10,7 +10,7 @@
 #include "tests/support/kinds.h"
 #include "tests/support/temp_folder.h"
 
-namespace poesy {
+namespace poesy::coupling {
 namespace {
 
 using Choice = ErrorPattern::Choice;
@@ -33,8 +33,8 @@ std::string with_analysis(std::string_view analysis) {
          std::string(analysis);
 }
 
-CouplingStudy coupling_of(const std::string& analysis, StudyUse use = StudyUse::run) {
-  return asked_of<CouplingStudy>(study_of_text(with_analysis(analysis), "study.toml", kCatalog, use).analysis);
+Options coupling_of(const std::string& analysis, StudyUse use = StudyUse::run) {
+  return asked_of<Options>(study_of_text(with_analysis(analysis), "study.toml", kCatalog, use).analysis);
 }
 
 const std::string kSizes = "linear = [\"1 mm\"]\nangular = [\"1 deg\"]\n";
@@ -46,11 +46,11 @@ TEST(StudyOfCoupling, LooksForWorstCasesUnlessToldOtherwise) {
   const Study study =
       study_of_text(with_analysis(kSizes + "worst_case = \"sum\"\n"), "study.toml", kCatalog, StudyUse::run);
   const Study again = study_of_text(resolved_text(study), "resolved.toml", kCatalog, StudyUse::run);
-  EXPECT_EQ(asked_of<CouplingStudy>(again.analysis).worst_case, UnknownSigns::sum);
+  EXPECT_EQ(asked_of<Options>(again.analysis).worst_case, UnknownSigns::sum);
 }
 
 TEST(StudyOfCoupling, TakesTheModelsSourcesUnlessToldOtherwise) {
-  const CouplingStudy coupling = coupling_of("linear = [\"0.1 mm\", \"0.3 mm\"]\nangular = [\"1 deg\", \"2 deg\"]\n");
+  const Options coupling = coupling_of("linear = [\"0.1 mm\", \"0.3 mm\"]\nangular = [\"1 deg\", \"2 deg\"]\n");
   EXPECT_EQ(coupling.linear, (std::vector<double>{1e-4, 3e-4}));
   ASSERT_EQ(coupling.angular.size(), 2u);
   EXPECT_DOUBLE_EQ(coupling.angular[1], 2 * kDegree);
@@ -62,7 +62,7 @@ TEST(StudyOfCoupling, TakesTheModelsSourcesUnlessToldOtherwise) {
 }
 
 TEST(StudyOfCoupling, TakesSourcesAndAPattern) {
-  const CouplingStudy coupling = coupling_of(R"(linear = ["1 mm"]
+  const Options coupling = coupling_of(R"(linear = ["1 mm"]
 angular = ["1 deg"]
 limbs = 1
 components = "independent"
@@ -83,8 +83,8 @@ factors = ["epsilon_1"]
 TEST(StudyOfCoupling, KeepsWhatThePatternLeaves) {
   const Study study =
       study_of_text(with_analysis(kSizes + "components = [\"x\"]\n"), "study.toml", kCatalog, StudyUse::run);
-  EXPECT_EQ(asked_of<CouplingStudy>(study.analysis).pattern.axes, std::vector<std::string>{"x"});
-  EXPECT_EQ(asked_of<CouplingStudy>(study.analysis).sources[0].factors.size(), 2u);  // delta_2 was named explicitly
+  EXPECT_EQ(asked_of<Options>(study.analysis).pattern.axes, std::vector<std::string>{"x"});
+  EXPECT_EQ(asked_of<Options>(study.analysis).sources[0].factors.size(), 2u);  // delta_2 was named explicitly
   EXPECT_EQ(study.analysis.factors, (std::vector<FactorIndex>{FactorIndex(0), FactorIndex(2)}));
 }
 
@@ -116,8 +116,8 @@ TEST(ResolvedTextOfCoupling, ReadsBackToTheSameStudy) {
     const std::string text = resolved_text(study);
     const Study again = study_of_text(text, "again.toml", kCatalog, StudyUse::run);
     EXPECT_EQ(resolved_text(again), text);
-    const CouplingStudy& a = asked_of<CouplingStudy>(study.analysis);
-    const CouplingStudy& b = asked_of<CouplingStudy>(again.analysis);
+    const Options& a = asked_of<Options>(study.analysis);
+    const Options& b = asked_of<Options>(again.analysis);
     EXPECT_EQ(a.linear, b.linear);
     EXPECT_EQ(a.angular, b.angular);
     EXPECT_EQ(a.pattern.limbs, b.pattern.limbs);
@@ -227,7 +227,7 @@ TEST(StudyOfCoupling, AsksForSourcesWhereTheModelSuggestsNone) {
   expect_error_of_section(kSizes, without, {"model \"fake\" suggests none", "2 to 8 [[analysis.sources]]"});
   const Study study =
       study_of_text(with_analysis("linear = [\"1 mm\"]\n" + kLengths), "study.toml", without, StudyUse::run);
-  EXPECT_EQ(asked_of<CouplingStudy>(study.analysis).sources[1].name, "source 2");
+  EXPECT_EQ(asked_of<Options>(study.analysis).sources[1].name, "source 2");
 }
 
 TEST(StudyOfCoupling, SaysWhichUsualSourceThePatternEmpties) {
@@ -246,13 +246,13 @@ TEST(StudyOfAnotherKind, RefusesTheKeysOfCoupling) {
 }
 
 TEST(TemplateOfCoupling, ShowsTheSizesThatItsSourcesNeed) {
-  const std::string text = template_text(kCatalog.front(), kCouplingStudy);
+  const std::string text = template_text(kCatalog.front(), kStudy);
   EXPECT_NE(text.find("\nangular = ["), std::string::npos);
   Catalog lengths = kCatalog;
   lengths.front().description.factor_sets.push_back({"lengths", "", {FactorIndex(0)}});
   lengths.front().description.sources.front().set = "lengths";
-  EXPECT_NE(template_text(lengths.front(), kCouplingStudy).find("\n# angular = ["), std::string::npos);
+  EXPECT_NE(template_text(lengths.front(), kStudy).find("\n# angular = ["), std::string::npos);
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::coupling

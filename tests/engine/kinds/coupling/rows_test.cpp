@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <set>
 
-namespace poesy {
+namespace poesy::coupling {
 namespace {
 
 using Choice = ErrorPattern::Choice;
@@ -29,7 +29,7 @@ ModelDescription model() {
   return description;
 }
 
-CouplingStudy study() {
+Options study() {
   return {{1e-4, 3e-4}, {1e-3, 2e-3}, {}, {{"A", indices({4, 0, 1, 5, 2, 6})}, {"T", indices({3, 7})}}};
 }
 
@@ -84,7 +84,7 @@ TEST(SourceSubsets, StandByNumberThenInOrder) {
 TEST(CouplingRows, HaveNoSetTwice) {
   for (const Choice limbs : {Choice::all, Choice::some, Choice::independent}) {
     for (const Choice components : {Choice::all, Choice::some, Choice::independent}) {
-      CouplingStudy some = study();
+      Options some = study();
       some.pattern = {limbs, 2, components, {"y"}};
       const CouplingRows rows = coupling_rows(some, model());
       std::set<ErrorBlock> sets(rows.errors.begin(), rows.errors.end());
@@ -99,7 +99,7 @@ TEST(CouplingRows, HaveNoSetTwice) {
 }
 
 TEST(CouplingRows, AreSubsetsThenBlocks) {
-  CouplingStudy some = study();
+  Options some = study();
   EXPECT_EQ(coupling_rows(some, model()).errors.size(), 3u);
   some.pattern.components = Choice::independent;  // A has three blocks (its components); T has only the component y
   const CouplingRows rows = coupling_rows(some, model());
@@ -109,7 +109,7 @@ TEST(CouplingRows, AreSubsetsThenBlocks) {
 }
 
 TEST(CouplingTable, HasTheSubsetsAtEachSize) {
-  CouplingStudy some = study();
+  Options some = study();
   some.pattern = {Choice::some, 1, Choice::all, {}};
   const ErrorTable table = coupling_table(some, model());
   EXPECT_EQ(table.factors, indices({0, 1, 2, 3}));
@@ -119,11 +119,11 @@ TEST(CouplingTable, HasTheSubsetsAtEachSize) {
 }
 
 TEST(CouplingTable, NeedsNoSizeOfAnglesWhereThereIsNone) {
-  CouplingStudy lengths = study();
+  Options lengths = study();
   lengths.angular.clear();
   lengths.sources = {{"X", indices({0, 4})}, {"Q", indices({2, 6})}};
   EXPECT_EQ(coupling_table(lengths, model()).rows, 6u);
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::coupling

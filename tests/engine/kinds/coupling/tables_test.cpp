@@ -8,7 +8,7 @@
 #include "engine/report/tables.h"
 #include "tests/engine/kinds/stored.h"
 
-namespace poesy {
+namespace poesy::coupling {
 namespace {
 
 StoredResult example() {
@@ -19,15 +19,15 @@ StoredResult example() {
   result.factors = {{"a", "m"}, {"b", "m"}};
   result.responses = {{"tilt", "rad"}, {"x", "m"}};
   result.signed_headline = {1};
-  CouplingResult& found = coupling_in(result);
+  Result& found = coupling_in(result);
   found.size_names = {"0.1 mm"};
   found.linear = decltype(found.linear)({1}, 1e-4);
   found.angular = decltype(found.angular)({1}, std::numeric_limits<double>::quiet_NaN());
   found.sources = {"FS", "T"};
   found.subsets = {"FS", "T", "FS+T"};
-  found.effect = CouplingResult::Curves({2, 1, 3, 4});
+  found.effect = Result::Curves({2, 1, 3, 4});
   found.worst_case = found.effect;  // the tables show only the maxima over the poses
-  found.count = CouplingResult::Summary<std::uint64_t>({2, 1, 3}, 4);
+  found.count = Result::Summary<std::uint64_t>({2, 1, 3}, 4);
   found.effect_max = {{2, 1, 3}, {0.0, 0.0, 0.0, 4e-5, 1e-5, 3.5e-5}};
   found.effect_max_pose = {{2, 1, 3}, {0, 0, 0, 3, 0, 3}};
   found.interaction_max = {{2, 1, 3}, {0.0, 0.0, 0.0, 0.0, 0.0, 1e-8}};
@@ -81,7 +81,7 @@ TEST(CouplingTable, NamesCornersThatCannotBeAssembled) {
   StoredResult result = example();
   EXPECT_EQ(coupling_tables(result).back().notes.front(),
             "worst case of FS+T: pose 3 (z -180 mm, gamma 5.73 deg), with +a, -b");
-  CouplingResult& found = coupling_in(result);
+  Result& found = coupling_in(result);
   found.unsolved_corners = {{1, 3, 4}, {0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2, 0}};
   found.unsolved_pose = {{1, 3}, {-1, -1, 0}};
   found.unsolved_signs = {{1, 3, 2}, {0, 0, 0, 0, -1, -1}};
@@ -128,4 +128,4 @@ TEST(CouplingTable, CallsRoundingZero) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::coupling

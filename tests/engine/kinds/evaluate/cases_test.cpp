@@ -10,7 +10,7 @@
 
 #include "tests/support/elements.h"
 
-namespace poesy {
+namespace poesy::evaluate {
 namespace {
 
 using test::elements;
@@ -63,4 +63,4 @@ TEST(Evaluation, LeavesOutWhatDoesNotCount) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::evaluate

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <functional>
 
-namespace poesy {
+namespace poesy::identification {
 namespace {
 
 constexpr double kRounding = 1e-14;
@@ -49,20 +49,20 @@ SolveTable solver(Deformation deformation) {
 
 Analysis analysis() {
   Analysis identification;
-  identification.kind = &kIdentificationStudy;
+  identification.kind = &kStudy;
   for (std::size_t f = 0; f < 6; ++f) identification.factors.emplace_back(f);
-  asked_of<IdentificationOptions>(identification).groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
+  asked_of<Options>(identification).groups = {{"large", 5e-3, 5e-3}, {"small", 5e-5, 4e-4}};
   return identification;
 }
 
-IdentificationResult identified(const Deformation& deformation, const Analysis& what = analysis()) {
+Result identified(const Deformation& deformation, const Analysis& what = analysis()) {
   return identify(what, model(), solver(deformation)).value();
 }
 
 using Verdicts = std::vector<std::uint8_t>;
 
 TEST(Identify, FindsErrorsThatDeformAloneAndCouplingsOfAFrame) {
-  const IdentificationResult found =
+  const Result found =
       identified([](auto e, std::size_t) { return std::abs(e[4]) + std::abs(e[0] * e[1]) + std::abs(e[2] * e[3]); });
   EXPECT_EQ(test::elements(found.single), (Verdicts{0, 0, 0, 0, 1, 0}));
   // For a coupled length and angle only the angle is reported, for two coupled angles both.
@@ -78,7 +78,7 @@ TEST(Identify, FindsErrorsThatDeformAloneAndCouplingsOfAFrame) {
 }
 
 TEST(Identify, DoesNotCoupleErrorsOfDifferentFrames) {
-  const IdentificationResult found = identified([](auto e, std::size_t) { return std::abs(e[0] * e[2]); });
+  const Result found = identified([](auto e, std::size_t) { return std::abs(e[0] * e[2]); });
   EXPECT_EQ(test::elements(found.coupled), (Verdicts{0, 0, 0, 0, 0, 0}));
   EXPECT_TRUE(found.couplings.empty());
 }
@@ -114,14 +114,14 @@ TEST(Identify, AsksForAShareOfThePoses) {
 
 TEST(Identify, AsksForOnePoseAtLeast) {
   Analysis hardly = analysis();
-  asked_of<IdentificationOptions>(hardly).pose_share = 0.01;
-  const IdentificationResult found = identified([](auto e, std::size_t) { return std::abs(e[0]); }, hardly);
+  asked_of<Options>(hardly).pose_share = 0.01;
+  const Result found = identified([](auto e, std::size_t) { return std::abs(e[0]); }, hardly);
   EXPECT_EQ(found.required_poses, 1u);
   EXPECT_EQ(test::elements(found.single), (Verdicts{1, 0, 0, 0, 0, 0}));
 }
 
 TEST(Identify, CountsAnUnsolvedPoseAsDeformed) {
-  const IdentificationResult found =
+  const Result found =
       identified([](auto e, std::size_t pose) { return e[0] != 0.0 && pose < 2 ? std::nan("") : 0.0; });
   EXPECT_EQ(found.single(0), 1);
   EXPECT_EQ(found.not_solved(0, 0), 2u);
@@ -129,7 +129,7 @@ TEST(Identify, CountsAnUnsolvedPoseAsDeformed) {
 }
 
 TEST(Identify, KeepsGroupsApart) {
-  const IdentificationResult found = identified([](auto e, std::size_t) { return e[0] > 1e-3 ? 1.0 : 0.0; });
+  const Result found = identified([](auto e, std::size_t) { return e[0] > 1e-3 ? 1.0 : 0.0; });
   EXPECT_EQ(found.single_by_group(0, 0), 1);
   EXPECT_EQ(found.single_by_group(1, 0), 0);
   EXPECT_EQ(found.single(0), 1);
@@ -140,4 +140,4 @@ TEST(Identify, StopsWhenTheSolvesStop) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::identification

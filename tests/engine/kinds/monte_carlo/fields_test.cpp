@@ -8,7 +8,7 @@
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 constexpr std::size_t kPoses = test::Example::kPoses;
@@ -40,23 +40,20 @@ void expect_same_members(const Found& found, const Found& expected, Members... m
 }
 
 TEST_F(MonteCarloFile, IsReadBackAsItWas) {
-  const MonteCarloResult written = example_.monte_carlo();
+  const Result written = example_.monte_carlo();
   const StoredResult stored = read_result(path_);
-  const MonteCarloResult& found = monte_carlo_of(stored);
+  const Result& found = monte_carlo_of(stored);
   EXPECT_EQ(stored.kind, "monte-carlo");
   EXPECT_EQ(stored.factor_sigma.size(), 2u);
   EXPECT_EQ(found.conf_level, 0.9);
   EXPECT_EQ(found.quantile_relative_error, 1.0 / 512.0);
   EXPECT_EQ(found.levels, written.levels);
-  expect_same_members(found, written, &MonteCarloResult::mean, &MonteCarloResult::mean_ci_low,
-                      &MonteCarloResult::mean_ci_high, &MonteCarloResult::std, &MonteCarloResult::min,
-                      &MonteCarloResult::max, &MonteCarloResult::quantiles, &MonteCarloResult::overall_mean,
-                      &MonteCarloResult::overall_std, &MonteCarloResult::overall_min, &MonteCarloResult::overall_max,
-                      &MonteCarloResult::overall_quantiles, &MonteCarloResult::rms, &MonteCarloResult::overall_rms,
-                      &MonteCarloResult::quantiles_ci_low, &MonteCarloResult::quantiles_ci_high,
-                      &MonteCarloResult::overall_quantiles_ci_low, &MonteCarloResult::overall_quantiles_ci_high,
-                      &MonteCarloResult::histogram_edges, &MonteCarloResult::share_magnitude,
-                      &MonteCarloResult::quantile_error, &MonteCarloResult::overall_quantile_error);
+  expect_same_members(found, written, &Result::mean, &Result::mean_ci_low, &Result::mean_ci_high, &Result::std,
+                      &Result::min, &Result::max, &Result::quantiles, &Result::overall_mean, &Result::overall_std,
+                      &Result::overall_min, &Result::overall_max, &Result::overall_quantiles, &Result::rms,
+                      &Result::overall_rms, &Result::quantiles_ci_low, &Result::quantiles_ci_high,
+                      &Result::overall_quantiles_ci_low, &Result::overall_quantiles_ci_high, &Result::histogram_edges,
+                      &Result::share_magnitude, &Result::quantile_error, &Result::overall_quantile_error);
   EXPECT_EQ(stored.failures, written.failures);
   EXPECT_EQ(found.count, written.count);
   EXPECT_EQ(found.histogram_counts, written.histogram_counts);
@@ -82,7 +79,7 @@ TEST_F(MonteCarloFile, HasNamedAxesAndStatesItsError) {
 }
 
 TEST_F(MonteCarloFile, ListsMachinesThatCannotBeAssembled) {
-  MonteCarloResult written = example_.monte_carlo();
+  Result written = example_.monte_carlo();
   written.solves[1].by_status[static_cast<std::size_t>(SolveStatus::not_assembled)] = 4;
   written.failures = {{0, PoseIndex{1}, {SampleIndex{7}, SolveStatus::not_assembled}}};
   const std::string path = folder_.file("impossible.h5");
@@ -104,7 +101,7 @@ TEST_F(MonteCarloFile, ListsMachinesThatCannotBeAssembled) {
 
 /// Files of version 0.2 have no quantile_error.
 TEST_F(MonteCarloFile, IsReadWithoutTheErrorsOfItsQuantiles) {
-  MonteCarloResult older = example_.machines();
+  Result older = example_.machines();
   older.quantile_error = {};
   older.overall_quantile_error = {};
   older.machines->largest.quantile_error = {};
@@ -231,4 +228,4 @@ TEST_F(MonteCarloFile, IsExportedPoseByPose) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -18,7 +18,7 @@
 #include "tests/support/fake_model.h"
 #include "tests/support/kinds.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 /// The first response is y = a . e with a = (1, 2, 0.5), the second is |y| / 2. Both are the same at each pose.
@@ -77,16 +77,16 @@ Study study_of(const Catalog& catalog, std::size_t poses, std::size_t machines, 
   for (const double one : sigma) study.errors.by_factor.push_back(Distribution::normal(one));
   study.poses.count = poses;
   study.poses.workspace = {{-0.3, -0.2}, {-0.1, 0.1}, {-0.1, 0.1}};
-  study.analysis.kind = &kMonteCarloStudy;
+  study.analysis.kind = &kStudy;
   study.analysis.factors = {FactorIndex(0), FactorIndex(1), FactorIndex(2)};
   study.analysis.samples = machines;
   study.analysis.draws = Draws::per_machine;
-  asked_of<MonteCarloOptions>(study.analysis).judge = Judge::yield;
+  asked_of<Options>(study.analysis).judge = Judge::yield;
   study.seed = 3;
   return study;
 }
 
-MonteCarloResult run(const Study& study, const Model& model, std::size_t threads = 2) {
+Result run(const Study& study, const Model& model, std::size_t threads = 2) {
   RunOptions options;
   options.threads = threads;
   return run_monte_carlo(Plan(study, select_poses(study.poses, model).poses), model, study.analysis, options).value();
@@ -109,7 +109,7 @@ TEST(Machines, FindTheYieldOfALinearModel) {
   const Catalog catalog = test::fake_catalog();
   Study study = study_of(catalog, 3, kMachines, {0.1, 0.05, 0.2});
   study.analysis.limits = {{0, 0.3}};
-  const MonteCarloResult found = run(study, LinearModel());
+  const Result found = run(study, LinearModel());
   ASSERT_TRUE(found.machines && found.machines->yield);
   const YieldResult& yield = *found.machines->yield;
   constexpr double kYield = 0.9167354833;
@@ -146,7 +146,7 @@ TEST(Machines, FindTheYieldOfShiftedErrors) {
     study.errors.by_factor[p] = Distribution::normal(kSigma[p]).shifted(kShift[p]);
   }
   study.analysis.limits = {{0, 0.3}};
-  const MonteCarloResult found = run(study, LinearModel());
+  const Result found = run(study, LinearModel());
   const YieldResult& yield = *found.machines->yield;
   const double deviation = 0.1 * std::sqrt(3.0);
   double expected = 0.0;
@@ -172,7 +172,7 @@ TEST(Machines, FindTheYieldOfShiftedErrors) {
 
 /// The estimates of the yield's derivatives by the standard deviation of each of the three errors.
 std::vector<Estimate> gradient_of(const Study& study) {
-  const MonteCarloResult found = run(study, LinearModel());
+  const Result found = run(study, LinearModel());
   const YieldResult& yield = *found.machines->yield;
   std::vector<Estimate> gradient;
   for (std::size_t p = 0; p < 3; ++p) {
@@ -218,8 +218,8 @@ TEST(Machines, FindTheYieldBetweenTwoEnds) {
   const Catalog catalog = test::fake_catalog();
   Study study = study_of(catalog, 3, kMachines, {0.1, 0.05, 0.2});
   study.analysis.limits = {{0, ValueLimit::between(kFrom, kTo)}};
-  asked_of<MonteCarloOptions>(study.analysis).yield = 0.7;
-  const MonteCarloResult found = run(study, LinearModel());
+  asked_of<Options>(study.analysis).yield = 0.7;
+  const Result found = run(study, LinearModel());
   const YieldResult& yield = *found.machines->yield;
   const double deviation = 0.1 * std::sqrt(3.0);
   const double expected = normal_share(kFrom, kTo, deviation);
@@ -271,7 +271,7 @@ TEST(Machines, JudgeTheSpreadOverThePoses) {
   study.errors.by_factor[1] = Distribution::uniform(3e-3);
   study.analysis.limits = {{0, ValueLimit::of_spread(1e-4)}};
   const PoseSet poses = select_poses(study.poses, test::FakeModel()).poses;
-  const MonteCarloResult found = run(study, test::FakeModel());
+  const Result found = run(study, test::FakeModel());
   const YieldResult& yield = *found.machines->yield;
   std::uint64_t rejects = 0;
   for (std::size_t s = 0; s < study.analysis.samples; ++s) {
@@ -414,8 +414,8 @@ TEST(MonteCarloEffects, AreThoseOfALinearModel) {
   const Catalog catalog = test::fake_catalog();
   Study study = study_of(catalog, 11, 5'500, {0.1, 0.05, 0.2});
   study.analysis.draws = Draws::per_pose;
-  asked_of<MonteCarloOptions>(study.analysis).judge = Judge::rms;
-  const MonteCarloResult found = run(study, LinearModel());
+  asked_of<Options>(study.analysis).judge = Judge::rms;
+  const Result found = run(study, LinearModel());
   EXPECT_EQ(found.effects.s1_poses, (std::vector<std::uint64_t>{0, 1, 2, 4, 5, 6, 8, 9}));
   for (std::size_t p = 0; p < 3; ++p) {
     const double half = 0.5 * (found.effects.effects.s1_ci_high(0, p) - found.effects.effects.s1_ci_low(0, p));
@@ -435,7 +435,7 @@ TEST(Machines, AgreeWithAllMachinesCountedOneByOne) {
   study.analysis.limits = {{0, 6e-4}, {1, 1.6e-4}};
   const FailingModel model;
   const PoseSet poses = select_poses(study.poses, model).poses;
-  const MonteCarloResult found = run(study, model);
+  const Result found = run(study, model);
   std::uint64_t rejects = 0;
   std::uint64_t unsolved = 0;
   std::uint64_t lenient = 0;
@@ -500,10 +500,10 @@ TEST(Machines, HaveTheDrawsOfTheFirstPoseEverywhere) {
 TEST(Machines, OfOnePoseAreItsSamples) {
   const Catalog catalog = test::fake_catalog();
   Study study = study_of(catalog, 1, 2500, {1e-3, 2e-3, 5e-3});
-  const MonteCarloResult machines = run(study, test::FakeModel());
+  const Result machines = run(study, test::FakeModel());
   study.analysis.draws = Draws::per_pose;
-  asked_of<MonteCarloOptions>(study.analysis).judge = Judge::rms;
-  const MonteCarloResult samples = run(study, test::FakeModel());
+  asked_of<Options>(study.analysis).judge = Judge::rms;
+  const Result samples = run(study, test::FakeModel());
   EXPECT_EQ(machines.quantiles, samples.quantiles);
   EXPECT_EQ(machines.min, samples.min);
   EXPECT_EQ(machines.max, samples.max);
@@ -519,7 +519,7 @@ TEST(Machines, StopWhenTheMeansOfMachinesAreKnown) {
   const Catalog catalog = test::fake_catalog();
   Study study = study_of(catalog, 4, 100'000, {1e-3, 2e-3, 5e-3});
   study.analysis.adaptive = AdaptiveSamples{1000, 0.02};
-  const MonteCarloResult found = run(study, test::FakeModel());
+  const Result found = run(study, test::FakeModel());
   ASSERT_TRUE(found.convergence);
   // The response is a folded normal with std = 0.756 mean, so n samples give the half-width 1.96 * 0.756 mean /
   // sqrt(n). This ratio is the same at every pose of a linear mechanism.
@@ -538,4 +538,4 @@ TEST(MachineTable, HasSmallerUnitsForMorePoses) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

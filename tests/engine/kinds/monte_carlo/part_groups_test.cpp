@@ -12,7 +12,7 @@
 #include "engine/random/normal_copula.h"
 #include "engine/random/normal_quantile.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 using Columns = std::vector<std::vector<double>>;
@@ -143,4 +143,4 @@ TEST(PartGroup, CountsEqualValues) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -58,12 +58,12 @@ std::vector<std::vector<double>> rows(std::size_t errors, std::size_t count, dou
   return found;
 }
 
-PartGroups groups_of(const PartsCase& one, const std::vector<std::vector<double>>& measured) {
-  PartGroups groups;
+monte_carlo::PartGroups groups_of(const PartsCase& one, const std::vector<std::vector<double>>& measured) {
+  monte_carlo::PartGroups groups;
   std::vector<SmoothedValues> parts;
   for (const std::vector<double>& values : measured) parts.emplace_back(values);
   if (one.correlation == 0.0) {
-    for (std::size_t p = 0; p < parts.size(); ++p) groups.each.push_back(part_group({p}, {parts[p]}, {}));
+    for (std::size_t p = 0; p < parts.size(); ++p) groups.each.push_back(monte_carlo::part_group({p}, {parts[p]}, {}));
     return groups;
   }
   std::vector<double> correlation;
@@ -75,7 +75,7 @@ PartGroups groups_of(const PartsCase& one, const std::vector<std::vector<double>
       correlation.push_back(p == q ? 1.0 : 2.0 * std::sin(std::numbers::pi / 6.0 * rank));
     }
   }
-  groups.each.push_back(part_group(std::move(errors), std::move(parts), correlation));
+  groups.each.push_back(monte_carlo::part_group(std::move(errors), std::move(parts), correlation));
   return groups;
 }
 
@@ -87,7 +87,7 @@ struct TwoIntervals {
 };
 
 TwoIntervals intervals_of(const PartsCase& one, std::size_t machines, Engine& engine) {
-  const PartGroups groups = groups_of(one, rows(one.errors, one.parts, one.correlation, engine));
+  const monte_carlo::PartGroups groups = groups_of(one, rows(one.errors, one.parts, one.correlation, engine));
   std::vector<double> errors = normals(one.errors * machines, engine);
   std::vector<std::span<double>> drawn;
   for (std::size_t p = 0; p < one.errors; ++p) drawn.push_back(std::span(errors).subspan(p * machines, machines));
@@ -104,7 +104,7 @@ TwoIntervals intervals_of(const PartsCase& one, std::size_t machines, Engine& en
     }
     NormalCopula(matrix).correlate(drawn);
   }
-  for (const PartGroup& group : groups.each) {
+  for (const monte_carlo::PartGroup& group : groups.each) {
     for (std::size_t k = 0; k < group.errors.size(); ++k) {
       const std::span<const double> values = group.parts[k].values();
       Distribution::measured({values.begin(), values.end()}).transform_scores(drawn[group.errors[k]]);
@@ -118,7 +118,7 @@ TwoIntervals intervals_of(const PartsCase& one, std::size_t machines, Engine& en
     rejected.push_back(std::abs(sum) > one.limit() ? 1 : 0);
     rejects += rejected.back();
   }
-  PartSums sums(groups);
+  monte_carlo::PartSums sums(groups);
   sums.add(errors, rejected);
   return {sums.interval(0.95), proportion(machines - rejects, machines, 0.95).interval};
 }

@@ -15,7 +15,7 @@
 #include "tests/support/kinds.h"
 #include "tests/support/names.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 constexpr std::size_t kPoses = 2;
@@ -23,14 +23,14 @@ constexpr std::size_t kSamples = 10000;
 
 Study study_of(double scale) {
   Study study = bench::published_study(kPoses, kSamples);
-  study.analysis.kind = &kMonteCarloStudy;
+  study.analysis.kind = &kStudy;
   study.analysis.background.reset();
   study.analysis.factors.clear();
   for (std::size_t f = 0; f < study.model().factors.size(); ++f) {
     study.analysis.factors.emplace_back(f);
     study.errors.by_factor[f] = Distribution::normal(scale * study.errors.by_factor[f].sigma());
   }
-  asked_of<MonteCarloOptions>(study.analysis).quantiles = {0.001, 0.05, 0.25, 0.5, 0.75, 0.95, 0.999};
+  asked_of<Options>(study.analysis).quantiles = {0.001, 0.05, 0.25, 0.5, 0.75, 0.95, 0.999};
   return study;
 }
 
@@ -67,7 +67,7 @@ TEST_P(MonteCarloOfAllErrors, HasSortedQuantiles) {
   const Study study = study_of(GetParam());
   const std::unique_ptr<Model> model = build_model(study.mechanism);
   const PoseSet poses = select_poses(study.poses, *model).poses;
-  const MonteCarloResult found = run_monte_carlo(Plan(study, poses), *model, study.analysis, {}).value();
+  const Result found = run_monte_carlo(Plan(study, poses), *model, study.analysis, {}).value();
   double worst = 0.0;
   for (std::size_t m = 0; m < kPoses; ++m) {
     const auto samples = solved_samples(study, *model, poses, PoseIndex(m));
@@ -90,4 +90,4 @@ TEST_P(MonteCarloOfAllErrors, HasSortedQuantiles) {
 INSTANTIATE_TEST_SUITE_P(Scales, MonteCarloOfAllErrors, testing::Values(0.1, 1.0), test::named({"Tenth", "Whole"}));
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -15,7 +15,7 @@
 #include "tests/support/function_model.h"
 #include "tests/support/kinds.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 constexpr std::array<double, 3> kSlopes{1.0, 2.0, 0.5};
@@ -33,14 +33,14 @@ test::FunctionModel linear_model() {
 struct MachineCase {
   test::FunctionModel model = linear_model();
   CatalogEntry entry{model.description(), nullptr};
-  Study study = test::function_study(entry, kMonteCarloStudy, Distribution::normal(0.1), 40'500);
+  Study study = test::function_study(entry, kStudy, Distribution::normal(0.1), 40'500);
 
   explicit MachineCase(std::size_t poses) {
     study.poses.count = poses;
     study.poses.workspace = {{0.1, 0.9}};
     study.analysis.draws = Draws::per_machine;
     study.analysis.limits = {{0, kLimit}};
-    asked_of<MonteCarloOptions>(study.analysis).judge = Judge::yield;
+    asked_of<Options>(study.analysis).judge = Judge::yield;
     study.seed = 5;
     set_sigmas({0.1, 0.05, 0.2});
   }
@@ -49,7 +49,7 @@ struct MachineCase {
     for (std::size_t p = 0; p < 3; ++p) study.errors.by_factor[p] = Distribution::normal(sigma[p]);
   }
 
-  MonteCarloResult run(std::size_t threads = 2) const {
+  Result run(std::size_t threads = 2) const {
     RunOptions options;
     options.threads = threads;
     return run_monte_carlo(Plan(study, select_poses(study.poses, model).poses), model, study.analysis, options).value();
@@ -92,7 +92,7 @@ TEST(StatedMean, MovesTheYieldOfNormalMachines) {
     one.study.errors.by_factor[p] = Distribution::normal(kSigma[p]).about(kMean[p]);
     mean += kSlopes[p] * kMean[p];
   }
-  const MonteCarloResult found = one.run();
+  const Result found = one.run();
   const auto yield_at = [&](std::size_t p, double sigma) {
     std::array<double, 3> sizes = kSigma;
     sizes[p] = sigma;
@@ -130,7 +130,7 @@ TEST(MeasuredErrors, ShareTheScatterWithoutTheirMeans) {
     mean += kSlopes[p] * kMean[p];
     variance += std::pow(kSlopes[p] * kSigma[p], 2);
   }
-  const MonteCarloResult found = one.run();
+  const Result found = one.run();
   const YieldResult& yield = *found.machines->yield;
   for (std::size_t p = 0; p < 3; ++p) {
     EXPECT_NEAR(yield.mean_square_share(0, p), std::pow(kSlopes[p] * kSigma[p], 2) / variance, 1e-6) << p;
@@ -154,7 +154,7 @@ TEST(StatedMean, MovesCorrelatedErrors) {
     mean += kSlopes[p] * kMean[p];
   }
   one.study.errors.correlated = {{{FactorIndex(0), FactorIndex(1)}, {1.0, kCorrelation, kCorrelation, 1.0}}};
-  const MonteCarloResult found = one.run();
+  const Result found = one.run();
   const auto yield_at = [&](std::size_t p, double sigma) {
     std::array<double, 3> sizes = kSigma;
     sizes[p] = sigma;
@@ -197,7 +197,7 @@ TEST(StatedMean, MovesTheYieldOfUniformMachines) {
     one.study.errors.by_factor[p] = Distribution::uniform(kHalf[p]).about(kMean[p]);
     mean += kSlopes[p] * kMean[p];
   }
-  const MonteCarloResult found = one.run();
+  const Result found = one.run();
   const auto yield_at = [&](std::size_t p, double half) {
     std::array<double, 3> w = kHalf;
     w[p] = half;
@@ -230,7 +230,7 @@ TEST(DrawnPerPose, GivesTheYieldAndItsGradient) {
   const std::array kSigma{0.1, 0.04, 0.1};
   one.set_sigmas(kSigma);
   one.study.errors.per_pose = {FactorIndex(1), FactorIndex(2)};
-  const MonteCarloResult found = one.run();
+  const Result found = one.run();
   const YieldResult& yield = *found.machines->yield;
   expect_yield(yield, repeated_yield(kSigma, kPoses));
   for (std::size_t p = 0; p < 3; ++p) {
@@ -249,7 +249,7 @@ TEST(DrawnPerPose, GivesTheYieldAndItsGradient) {
 TEST(DrawnPerPose, HasTheSharesOfItsScatter) {
   MachineCase one(4);
   one.study.errors.per_pose = {FactorIndex(1)};
-  const MonteCarloResult found = one.run();
+  const Result found = one.run();
   for (std::size_t p = 0; p < 3; ++p) {
     EXPECT_NEAR(found.effects.effects.s1(0, p), 1.0 / 3.0, 0.02) << p;
     EXPECT_NEAR(found.machines->yield->mean_square_share(0, p), 1.0 / 3.0, 0.02) << p;
@@ -268,7 +268,7 @@ TEST(DrawnPerPose, KeepsBlocksOfCorrelatedErrors) {
   one.set_sigmas(kSigma);
   one.study.errors.per_pose = {FactorIndex(1), FactorIndex(2)};
   one.study.errors.correlated = {{{FactorIndex(1), FactorIndex(2)}, {1.0, kCorrelation, kCorrelation, 1.0}}};
-  const MonteCarloResult found = one.run();
+  const Result found = one.run();
   const auto yield_at = [&](std::size_t p, double sigma) {
     std::array<double, 3> s = kSigma;
     s[p] = sigma;
@@ -286,9 +286,9 @@ TEST(DrawnPerPose, KeepsBlocksOfCorrelatedErrors) {
 
 TEST(DrawnPerPose, ChangesNothingWithOnePose) {
   MachineCase one(1);
-  const MonteCarloResult fixed = one.run();
+  const Result fixed = one.run();
   one.study.errors.per_pose = {FactorIndex(0), FactorIndex(1), FactorIndex(2)};
-  const MonteCarloResult anew = one.run();
+  const Result anew = one.run();
   EXPECT_EQ(anew.machines->yield->rejects, fixed.machines->yield->rejects);
   EXPECT_EQ(anew.mean, fixed.mean);
   EXPECT_EQ(anew.machines->yield->gradient, fixed.machines->yield->gradient);
@@ -299,12 +299,12 @@ TEST(DrawnPerPose, HasTheSameBitsForAnyThreads) {
   MachineCase one(5);
   one.study.analysis.samples = 5'300;
   one.study.errors.per_pose = {FactorIndex(2)};
-  const MonteCarloResult a = one.run(1);
-  const MonteCarloResult b = one.run(2);
+  const Result a = one.run(1);
+  const Result b = one.run(2);
   EXPECT_EQ(a.machines->yield->gradient, b.machines->yield->gradient);
   EXPECT_EQ(a.machines->yield->mean_square_share, b.machines->yield->mean_square_share);
   EXPECT_EQ(a.effects.effects.s1, b.effects.effects.s1);
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -11,7 +11,7 @@
 #include "engine/report/tables.h"
 #include "tests/engine/kinds/stored.h"
 
-namespace poesy {
+namespace poesy::monte_carlo {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -22,7 +22,7 @@ StoredResult example() {
   result.factors = {{"delta_1", "m"}, {"epsilon_1", "rad"}};
   result.responses = {{"linear_deformation", "m"}, {"ratio", "1"}};
   result.headline = {0, 1};
-  MonteCarloResult& found = monte_carlo_in(result);
+  Result& found = monte_carlo_in(result);
   found.quantile_relative_error = 1.0 / 512.0;
   found.levels = {0.5, 0.95};
   found.mean = {{2, 3}, {1e-3, 4e-3, 1e-3, 0.5, 0.25, 0.75}};
@@ -76,7 +76,7 @@ TEST(MonteCarloTable, ShowsAllPosesTogetherAndTheWorst) {
 
 TEST(MonteCarloTable, SaysHowGoodItsQuantilesAre) {
   StoredResult result = example();
-  MonteCarloResult& found = monte_carlo_in(result);
+  Result& found = monte_carlo_in(result);
   found.overall_quantile_error = {{2}, {1.5e-6, 0.125 / 512.0}};
   EXPECT_NE(text_of(result_tables(result, "linear_deformation"), kUnlimitedWidth).find("(quantiles to 0.195 % of std)"),
             std::string::npos);
@@ -89,7 +89,7 @@ TEST(MonteCarloTable, SaysHowGoodItsQuantilesAre) {
 TEST(MonteCarloTable, NamesSomeOfManyPosesLikeTheWorstByCoordinates) {
   StoredResult result = example();
   constexpr std::size_t kPoses = 10;
-  MonteCarloResult& found = monte_carlo_in(result);
+  Result& found = monte_carlo_in(result);
   found.solves.resize(kPoses);
   found.levels = {0.95};
   std::vector<double> coordinates;
@@ -100,11 +100,11 @@ TEST(MonteCarloTable, NamesSomeOfManyPosesLikeTheWorstByCoordinates) {
   }
   result.pose_coordinates = {{"z", "m"}};
   result.poses = PoseSet(1, coordinates);
-  found.quantiles_ci_low = MonteCarloResult::QuantilesAtPoses({1, kPoses, 1}, 1.5);
-  found.quantiles_ci_high = MonteCarloResult::QuantilesAtPoses({1, kPoses, 1}, 12.0);
+  found.quantiles_ci_low = Result::QuantilesAtPoses({1, kPoses, 1}, 1.5);
+  found.quantiles_ci_high = Result::QuantilesAtPoses({1, kPoses, 1}, 12.0);
   found.quantiles_ci_high(0, 0, 0) = 1.5;  // ends where the interval of the largest begins
   result.headline = {0};
-  found.mean = MonteCarloResult::AtPoses({1, kPoses}, 1.0);
+  found.mean = Result::AtPoses({1, kPoses}, 1.0);
   const Table table = monte_carlo_tables(result).at(1);
   EXPECT_EQ(table.rows[0].back().text, "8");
   EXPECT_EQ(table.notes.at(1),
@@ -231,7 +231,7 @@ StoredResult example_of_machines() {
   StoredResult result = example();
   result.factors = {{"delta_1", "m"}, {"epsilon_1", "rad"}, {"delta_2", "m"}, {"delta_3", "m"}, {"delta_4", "m"}};
   result.factor_sigma.assign(5, 1e-3);
-  MonteCarloResult& found = monte_carlo_in(result);
+  Result& found = monte_carlo_in(result);
   for (auto* list : {&found.effects.effects.s1, &found.effects.effects.s1_ci_low, &found.effects.effects.s1_ci_high}) {
     *list = MainEffects::Indices({2, 5}, 0.1);
   }
@@ -440,7 +440,7 @@ std::string notes_of_indices(const StoredResult& result) {
 TEST(NoIndices, HaveTheirTrueReason) {
   StoredResult result = example();
   result.headline = {0};
-  MonteCarloResult& found = monte_carlo_in(result);
+  Result& found = monte_carlo_in(result);
   found.count = {{2, 3}, {63, 100, 100, 100, 100, 100}};
   std::ranges::fill(found.effects.effects.s1, std::numeric_limits<double>::quiet_NaN());
   EXPECT_NE(notes_of_indices(result).find("no S1 is formed below 64 samples"), std::string::npos);
@@ -469,4 +469,4 @@ TEST(FailuresText, TellsWhatCannotBeAssembledFromWhatDidNotConverge) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::monte_carlo

@@ -8,7 +8,7 @@
 #include "engine/kinds/sensitivity/collector.h"
 #include "tests/engine/kinds/study_kinds.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 using namespace test;
@@ -27,7 +27,7 @@ Bytes bits(UnitStats stats) {
 
 /// A study of two errors at three poses, with all its units solved. Some samples fail.
 struct Solved {
-  explicit Solved(std::size_t samples) : prepared(study_of(&kSensitivityStudy, samples)) {
+  explicit Solved(std::size_t samples) : prepared(study_of(&kStudy, samples)) {
     UnitEvaluator evaluate(plan(), *prepared.model);
     for (std::size_t u = 0; u < plan().units(); ++u) found.push_back(evaluate(plan().unit(u)));
   }
@@ -55,10 +55,10 @@ struct Solved {
     return merged;
   }
 
-  SensitivityCollector collector(const Shard& shard = Shard()) const { return {plan(), kResponses, 0.95, shard}; }
+  Collector collector(const Shard& shard = Shard()) const { return {plan(), kResponses, 0.95, shard}; }
   /// A collector that has all units of this shard.
-  SensitivityCollector collected(const Shard& shard = Shard()) const {
-    SensitivityCollector collect = collector(shard);
+  Collector collected(const Shard& shard = Shard()) const {
+    Collector collect = collector(shard);
     for (std::size_t u = 0; u < plan().units(); ++u) {
       if (shard.of(kCells).holds(cell_of(u))) collect.add(plan().unit(u), found[u]);
     }
@@ -70,7 +70,7 @@ struct Solved {
 };
 
 /// The stored state of a collector. samples: number of samples of the study.
-Bytes state_of(SensitivityCollector collect, std::size_t samples) {
+Bytes state_of(Collector collect, std::size_t samples) {
   ByteWriter to;
   Archive archive(to);
   collect.state(archive, samples);
@@ -78,7 +78,7 @@ Bytes state_of(SensitivityCollector collect, std::size_t samples) {
 }
 
 /// Restores a collector from its stored states. samples: number of samples of the study.
-void take_up(SensitivityCollector& collect, const Bytes& states, std::size_t samples) {
+void take_up(Collector& collect, const Bytes& states, std::size_t samples) {
   ByteReader from(states);
   Archive archive(from);
   while (archive.is_left()) collect.state(archive, samples);
@@ -92,7 +92,7 @@ void expect_units_one_by_one(const CellStats& cells, const Solved& solved) {
 }
 
 /// The message with which the collector refuses a stored state. Empty if it accepts the state.
-std::string refusal(SensitivityCollector collect, const Bytes& state, std::size_t samples) {
+std::string refusal(Collector collect, const Bytes& state, std::size_t samples) {
   try {
     take_up(collect, state, samples);
     return "";
@@ -144,11 +144,11 @@ TEST(CellStats, OfLaterSamplesAreMergedCellByCell) {
 }
 
 /// Parameter: number of samples, so that a cell has whole units only, one smaller unit only, or both.
-class Collector : public testing::TestWithParam<std::size_t> {};
+class SensitivityCells : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(Collector, HasTheUnitsOneByOne) {
+TEST_P(SensitivityCells, HasTheUnitsOneByOne) {
   const Solved solved(GetParam());
-  SensitivityCollector collect = solved.collected();
+  Collector collect = solved.collected();
   for (std::size_t slot = 0; slot < 2; ++slot) {
     const CellStats of_slot = collect.cells_of(slot);
     ASSERT_EQ(of_slot.size(), kPoses);
@@ -159,14 +159,14 @@ TEST_P(Collector, HasTheUnitsOneByOne) {
   expect_units_one_by_one(std::move(collect).cells(), solved);
 }
 
-TEST_P(Collector, GoesOnFromAStateAfterAnyUnit) {
+TEST_P(SensitivityCells, GoesOnFromAStateAfterAnyUnit) {
   const Solved solved(GetParam());
   const Bytes end = state_of(solved.collected(), GetParam());
-  SensitivityCollector collect = solved.collector();
+  Collector collect = solved.collector();
   for (std::size_t u = 0; u < solved.plan().units(); ++u) {
     collect.add(solved.plan().unit(u), solved.found[u]);
     const Bytes state = state_of(collect, GetParam());
-    SensitivityCollector resumed = solved.collector();
+    Collector resumed = solved.collector();
     take_up(resumed, state, GetParam());
     EXPECT_EQ(state_of(resumed, GetParam()), state) << u;
     for (std::size_t cell = 0; cell < kCells; ++cell) EXPECT_EQ(resumed.units_done(cell), collect.units_done(cell));
@@ -177,20 +177,20 @@ TEST_P(Collector, GoesOnFromAStateAfterAnyUnit) {
   }
 }
 
-TEST_P(Collector, TakesUpTheStatesOfAllShards) {
+TEST_P(SensitivityCells, TakesUpTheStatesOfAllShards) {
   const Solved solved(GetParam());
   Bytes states;
   for (const std::size_t shard : {2UL, 0UL, 1UL}) {
     const Bytes state = state_of(solved.collected({shard, 3}), GetParam());
     states.insert(states.end(), state.begin(), state.end());
   }
-  SensitivityCollector whole = solved.collector();
+  Collector whole = solved.collector();
   take_up(whole, states, GetParam());
   EXPECT_EQ(state_of(whole, GetParam()), state_of(solved.collected(), GetParam()));
   expect_units_one_by_one(std::move(whole).cells(), solved);
 }
 
-TEST_P(Collector, RefusesTheCellsOfAnotherShard) {
+TEST_P(SensitivityCells, RefusesTheCellsOfAnotherShard) {
   const Solved solved(GetParam());
   for (std::size_t of = 0; of < 3; ++of) {
     for (std::size_t by = 0; by < 3; ++by) {
@@ -200,20 +200,21 @@ TEST_P(Collector, RefusesTheCellsOfAnotherShard) {
   }
 }
 
-TEST_P(Collector, RefusesACellTwice) {
+TEST_P(SensitivityCells, RefusesACellTwice) {
   const Solved solved(GetParam());
   Bytes state = state_of(solved.collected({1, 3}), GetParam());
   state.insert(state.end(), state.begin(), state.end());
   EXPECT_EQ(refusal(solved.collector(), state, GetParam()), "has a cell twice");
 }
 
-INSTANTIATE_TEST_SUITE_P(Samples, Collector, testing::Values(2 * Plan::kUnitSamples, 300, 2 * Plan::kUnitSamples + 300),
+INSTANTIATE_TEST_SUITE_P(Samples, SensitivityCells,
+                         testing::Values(2 * Plan::kUnitSamples, 300, 2 * Plan::kUnitSamples + 300),
                          [](const auto& tested) { return "of_" + std::to_string(tested.param); });
 
 TEST(SensitivityCollector, OfMoreSamplesLeavesTheSmallerUnitOut) {
   const Solved more(2 * Plan::kUnitSamples + 300);
   for (const std::size_t samples : {std::size_t{300}, Plan::kUnitSamples, Plan::kUnitSamples + 300}) {
-    SensitivityCollector collect = more.collector();
+    Collector collect = more.collector();
     take_up(collect, state_of(Solved(samples).collected(), samples), samples);
     const std::size_t whole = samples / Plan::kUnitSamples;
     for (std::size_t u = 0; u < more.plan().units(); ++u) {
@@ -229,4 +230,4 @@ TEST(SensitivityCollector, OfMoreSamplesLeavesTheSmallerUnitOut) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::sensitivity

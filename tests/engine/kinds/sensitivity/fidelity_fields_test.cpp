@@ -14,7 +14,7 @@
 #include "tests/support/kinds.h"
 #include "tests/support/temp_folder.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 /// The example's result with a second fidelity.
@@ -24,7 +24,7 @@ class FidelityFile : public testing::Test {
     catalog_[0].description.fidelities = {"exact", "first-order"};
     example_.study.mechanism.entry = &catalog_[0];
     example_.study.mechanism.compared = 1;
-    asked_of<SensitivityOptions>(example_.study.analysis).linearity = 0.02;
+    asked_of<Options>(example_.study.analysis).linearity = 0.02;
     result_.fidelity = test::Example::fidelity(catalog_[0].description.fidelities);
     write_result(path_, example_.study, example_.poses, result_, example_.facts);
   }
@@ -32,7 +32,7 @@ class FidelityFile : public testing::Test {
   Catalog catalog_ = test::fake_catalog();
   test::TempFolder folder_;
   test::Example example_;
-  SensitivityResult result_ = example_.sensitivity();
+  Result result_ = example_.sensitivity();
   std::string path_ = folder_.file("fidelity.h5");
 };
 
@@ -77,7 +77,7 @@ TEST_F(FidelityFile, IsExported) {
 }
 
 TEST_F(FidelityFile, ConfirmationOfItsTolerancesIsAtTheFirstFidelity) {
-  SensitivityResult solved = example_.sensitivity();
+  Result solved = example_.sensitivity();
   for (const auto values : {solved.global.all(), solved.mean.all(), solved.std.all()}) std::ranges::fill(values, 1.0);
   set_references(example_.study, solved);
   solved.fidelity = result_.fidelity;
@@ -95,4 +95,4 @@ TEST_F(FidelityFile, ConfirmationOfItsTolerancesIsAtTheFirstFidelity) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::sensitivity

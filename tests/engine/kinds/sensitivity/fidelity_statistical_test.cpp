@@ -9,7 +9,7 @@
 #include "tests/support/kinds.h"
 #include "tests/support/two_fidelities_model.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 using Model = test::TwoFidelitiesModel;
@@ -21,7 +21,7 @@ FidelityResult compared(double sigma, std::size_t samples) {
   Study study;
   study.mechanism = {&catalog.front(), {Model::kArm}, 0, {}, 1};
   study.errors.by_factor.assign(3, Distribution::normal(sigma));
-  study.analysis.kind = &kSensitivityStudy;
+  study.analysis.kind = &kStudy;
   study.analysis.factors = {FactorIndex(0), FactorIndex(1), FactorIndex(2)};
   study.analysis.samples = samples;
   study.seed = 17;
@@ -62,4 +62,4 @@ TEST(FidelityOfAQuadraticModel, VerdictsTurnWithTheSize) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::sensitivity

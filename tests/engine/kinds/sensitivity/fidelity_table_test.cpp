@@ -7,7 +7,7 @@
 #include "engine/report/tables.h"
 #include "tests/engine/kinds/stored.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -52,4 +52,4 @@ TEST(FidelityTable, IsThereForTwoFidelitiesAlone) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::sensitivity

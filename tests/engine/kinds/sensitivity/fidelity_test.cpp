@@ -7,19 +7,19 @@
 #include <cmath>
 #include <limits>
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSigma = 1e-3;
 
 /// Two lengths and an angle, one error, two poses: indices and means that are easy to follow.
-SensitivityResult result_of(const std::vector<double>& indices) {
+Result result_of(const std::vector<double>& indices) {
   const std::size_t responses = indices.size();
-  SensitivityResult result;
+  Result result;
   result.global = {{responses, 1}, indices};
-  result.count = SensitivityResult::Cells<std::uint64_t>({responses, 1, 2}, 100);
-  result.mean = result.std = SensitivityResult::Cells<double>({responses, 1, 2});
+  result.count = Result::Cells<std::uint64_t>({responses, 1, 2}, 100);
+  result.mean = result.std = Result::Cells<double>({responses, 1, 2});
   result.local = result.std;
   for (std::size_t r = 0; r < responses; ++r) std::ranges::fill(result.std.row(r), indices[r] * kSigma);
   result.background = Array<double, axis::Response, axis::Pose>({responses, 2});
@@ -27,7 +27,7 @@ SensitivityResult result_of(const std::vector<double>& indices) {
   return result;
 }
 
-FidelityResult compare(const SensitivityResult& first, const SensitivityResult& second, double sigma = kSigma) {
+FidelityResult compare(const Result& first, const Result& second, double sigma = kSigma) {
   constexpr std::array kDimensions{Dimension::length, Dimension::length, Dimension::angle};
   return compare_fidelities(first, second, std::span(kDimensions).first(first.responses()), std::span(&sigma, 1), 0.01);
 }
@@ -58,7 +58,7 @@ TEST(CompareFidelities, SmallDifferenceInASmallComponentIsLinear) {
 }
 
 TEST(CompareFidelities, SeesAShiftOfTheMeanOverTheBackground) {
-  SensitivityResult first = result_of({2.0});
+  Result first = result_of({2.0});
   first.mean = {{1, 1, 2}, {3e-4 + 0.04 * kSigma, 5e-4 - 0.08 * kSigma}};
   first.background = {{1, 2}, {3e-4, 5e-4}};
   const FidelityResult found = compare(first, result_of({2.0}));
@@ -92,13 +92,13 @@ TEST(CompareFidelities, EffectAtOneOfThemOnlyIsNotLinear) {
 TEST(CompareFidelities, WhatIsNotKnownIsNotLinear) {
   EXPECT_EQ(compare(result_of({2.0, kNaN, 1.0}), result_of({2.0, 1.0, 1.0})).linear(0), 0);
   EXPECT_EQ(compare(result_of({2.0, 1.0, 1.0}), result_of({2.0, kNaN, 1.0})).linear(0), 0);
-  SensitivityResult without_background = result_of({2.0});
+  Result without_background = result_of({2.0});
   without_background.background(0, 1) = kNaN;
   EXPECT_EQ(compare(without_background, result_of({2.0})).linear(0), 0);
 }
 
 TEST(CompareFidelities, OtherSamplesAreNoComparison) {
-  SensitivityResult second = result_of({2.0, 1.0, 1.0});
+  Result second = result_of({2.0, 1.0, 1.0});
   second.count(2, 0, 0) = 99;
   second.solves(0, 1).by_status[static_cast<std::size_t>(SolveStatus::singular)] = 1;
   const FidelityResult found = compare(result_of({2.0, 1.0, 1.0}), second);
@@ -108,4 +108,4 @@ TEST(CompareFidelities, OtherSamplesAreNoComparison) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::sensitivity

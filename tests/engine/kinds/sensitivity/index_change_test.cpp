@@ -9,7 +9,7 @@
 #include "engine/report/tables.h"
 #include "tests/engine/kinds/sensitivity/ranked_result.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -132,4 +132,4 @@ TEST(WrongSizes, StandBelowTheTolerances) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::sensitivity

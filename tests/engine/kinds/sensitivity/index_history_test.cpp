@@ -10,12 +10,12 @@
 #include "tests/engine/kinds/study_kinds.h"
 #include "tests/support/kinds.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 using namespace test;
 
-SensitivityResult result_of(const Study& study) {
+Result result_of(const Study& study) {
   const Prepared prepared(study);
   return run_sensitivity(prepared.plan, *prepared.model, 0.95, {}).value();
 }
@@ -35,7 +35,7 @@ Bits at_point(const EstimateCourse& history, std::size_t k) {
   return bits;
 }
 
-Bits indices(const SensitivityResult& result) {
+Bits indices(const Result& result) {
   Bits bits;
   for (const auto* values : {&result.global, &result.global_ci_low, &result.global_ci_high}) append(bits, *values);
   return bits;
@@ -44,7 +44,7 @@ Bits indices(const SensitivityResult& result) {
 /// Expects that each point of the history equals the result of a study with that number of samples. The last point is
 /// the result itself.
 void expect_results_of_shorter_studies(const Study& study) {
-  const SensitivityResult result = result_of(study);
+  const Result result = result_of(study);
   ASSERT_TRUE(result.history);
   const EstimateCourse& history = *result.history;
   ASSERT_EQ(history.samples.back(), study.analysis.samples);
@@ -58,7 +58,7 @@ void expect_results_of_shorter_studies(const Study& study) {
 class History : public testing::TestWithParam<NotConverged> {
  protected:
   static Study failing(std::size_t samples) {
-    Study study = study_of(&kSensitivityStudy, samples);
+    Study study = study_of(&kStudy, samples);
     study.not_converged = GetParam();
     return study;
   }
@@ -98,9 +98,7 @@ INSTANTIATE_TEST_SUITE_P(Policies, History, testing::Values(NotConverged::exclud
 
 TEST(History, HasThePointsAndTheEnd) {
   using List = std::vector<std::uint64_t>;
-  const auto samples = [](std::size_t count) {
-    return result_of(study_of(&kSensitivityStudy, count)).history.value().samples;
-  };
+  const auto samples = [](std::size_t count) { return result_of(study_of(&kStudy, count)).history.value().samples; };
   EXPECT_EQ(samples(2), List{2});
   EXPECT_EQ(samples(100), List{100});
   EXPECT_EQ(samples(2300), (List{100, 200, 500, 1000, 2000, 2300}));
@@ -108,7 +106,7 @@ TEST(History, HasThePointsAndTheEnd) {
 }
 
 TEST(History, KeepsThePosesOfOneErrorAtATime) {
-  Study study = study_of(&kSensitivityStudy, 10000);
+  Study study = study_of(&kStudy, 10000);
   study.poses.count = 50;
   const Prepared prepared(study);
   const std::size_t poses = prepared.plan.poses().size();
@@ -143,4 +141,4 @@ TEST(History, KeepsThePosesOfOneErrorAtATime) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::sensitivity

@@ -14,7 +14,7 @@
 #include "tests/support/fake_ranks.h"
 #include "tests/support/kinds.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 using namespace test;
@@ -63,7 +63,7 @@ class CurveModel final : public FakeModel {
 
 /// The relative change of the index of one error at a tenth of its size, for a model with this curve.
 double change_of(const CurveModel::Curve& curve, double rounding = 0.0, std::size_t samples = 200) {
-  Study study = study_of(&kSensitivityStudy, samples);
+  Study study = study_of(&kStudy, samples);
   study.analysis.factors = {FactorIndex(0)};
   const Prepared prepared(study);
   const auto changes = index_changes(prepared.plan, CurveModel(curve, rounding), {});
@@ -123,7 +123,7 @@ Bits changes_in(const Prepared& prepared, const RunOptions& options) {
 }
 
 TEST(IndexChanges, HaveTheSameBitsForAnyThreadsAndRanks) {
-  const Prepared prepared(study_of(&kSensitivityStudy, 100));
+  const Prepared prepared(study_of(&kStudy, 100));
   const Bits expected = changes_in(prepared, {.threads = 1, .progress = {}});
   ASSERT_EQ(expected.size(), 4U);
   for (const std::size_t threads : {2U, 3U, 7U}) {
@@ -142,14 +142,14 @@ TEST(IndexChanges, HaveTheSameBitsForAnyThreadsAndRanks) {
 }
 
 TEST(IndexChanges, DependOnTheFirstDrawsAlone) {
-  const Prepared few(study_of(&kSensitivityStudy, kLinearityDraws));
-  const Prepared many(study_of(&kSensitivityStudy, 5000));
+  const Prepared few(study_of(&kStudy, kLinearityDraws));
+  const Prepared many(study_of(&kStudy, 5000));
   EXPECT_EQ(changes_in(few, {}), changes_in(many, {}));
 }
 
 TEST(IndexChanges, TakeNoMoreThanSomePosesOfMany) {
   for (const std::size_t poses : {std::size_t{3}, kSomePoses, 2 * kSomePoses + 5}) {
-    Study study = study_of(&kSensitivityStudy, 1000);
+    Study study = study_of(&kStudy, 1000);
     study.poses.count = poses;
     const Prepared prepared(study);
     std::atomic<std::size_t> solves = 0;
@@ -164,7 +164,7 @@ TEST(IndexChanges, TakeNoMoreThanSomePosesOfMany) {
 }
 
 TEST(IndexChanges, AreNoneWhenStopped) {
-  const Prepared prepared(study_of(&kSensitivityStudy, 100));
+  const Prepared prepared(study_of(&kStudy, 100));
   const std::atomic<bool> stop{true};
   RunOptions options;
   options.stop = &stop;
@@ -174,7 +174,7 @@ TEST(IndexChanges, AreNoneWhenStopped) {
 TEST(IndexChanges, StoppedAfterItsStagesARunIsNotComplete) {
   std::size_t saved = 0;
   Checkpoints checkpoints([] { return false; }, [&](std::span<const ByteSource>) { ++saved; });
-  const Prepared prepared(study_of(&kSensitivityStudy, 100));
+  const Prepared prepared(study_of(&kStudy, 100));
   RunOptions options;
   options.checkpoints = &checkpoints;
   ASSERT_TRUE(run_sensitivity(prepared.plan, *prepared.model, 0.95, options));
@@ -185,4 +185,4 @@ TEST(IndexChanges, StoppedAfterItsStagesARunIsNotComplete) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::sensitivity

@@ -9,7 +9,7 @@
 #include "tests/engine/kinds/study_kinds.h"
 #include "tests/support/kinds.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 using namespace test;
@@ -75,7 +75,7 @@ CatalogEntry radius_entry(double own) {
 }
 
 Array<double, axis::RadiusMultiple, axis::Response> correlations(const CatalogEntry& entry) {
-  Study study = study_of(&kSensitivityStudy, 10);
+  Study study = study_of(&kStudy, 10);
   study.mechanism.entry = &entry;
   study.analysis.factors = {FactorIndex(0), FactorIndex(1), FactorIndex(2)};
   return radius_rank_correlations(study, Prepared(study).plan);
@@ -119,4 +119,4 @@ TEST(PointsRadius, IsNothingToAMechanismWithoutPointsOrFirstOrder) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::sensitivity

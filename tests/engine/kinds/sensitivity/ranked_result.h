@@ -5,7 +5,7 @@
 #include "engine/result/result_file.h"
 #include "tests/engine/kinds/stored.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 
 /// A sensitivity result with four errors, one of them without an index, and three responses. The published index and
 /// the corrected index rank the errors differently.
@@ -20,7 +20,7 @@ inline StoredResult ranked_result() {
   result.factor_distribution.assign(4, "normal");
   result.responses = {{"x", "m"}, {"tilt", "rad"}, {"ratio", "1"}};
   result.headline = {0, 1, 2};
-  SensitivityResult& found = sensitivity_in(result);
+  Result& found = sensitivity_in(result);
   found.global_corrected = {{3, 4}, {0.4, 0.1, 0.3, kNaN, 1e-13, 0.7, 0.0, kNaN, 1.0, 1.0, 1.0, kNaN}};
   found.global_corrected_ci_low = {{3, 4}, {0.3, 0.09, 0.2, kNaN, 0.0, 0.6, 0.0, kNaN, 1.0, 1.0, 1.0, kNaN}};
   found.global_corrected_ci_high = {{3, 4}, {0.5, 0.2, 0.35, kNaN, 1e-13, 0.8, 0.0, kNaN, 1.0, 1.0, 1.0, kNaN}};
@@ -39,4 +39,4 @@ inline StoredResult ranked_result() {
   return result;
 }
 
-}  // namespace poesy
+}  // namespace poesy::sensitivity

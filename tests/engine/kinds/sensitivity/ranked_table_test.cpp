@@ -9,7 +9,7 @@
 #include "engine/report/tables.h"
 #include "tests/engine/kinds/sensitivity/ranked_result.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 std::vector<std::string> names(RowOrder order) {
@@ -146,4 +146,4 @@ TEST(KeepFirst, SaysHowManyThereAre) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::sensitivity

@@ -8,7 +8,7 @@
 #include "tests/engine/kinds/example_result.h"
 #include "tests/support/temp_folder.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -40,7 +40,7 @@ class SeparationFile : public testing::Test {
   Catalog catalog_ = fake_;
   test::TempFolder folder_;
   test::Example example_;
-  SensitivityResult result_ = example_.sensitivity();
+  Result result_ = example_.sensitivity();
   std::string path_ = folder_.file("separation.h5");
 };
 
@@ -94,4 +94,4 @@ TEST_F(SeparationFile, ModelsThatDoNotSeparateHaveNone) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::sensitivity

@@ -8,7 +8,7 @@
 #include "engine/report/tables.h"
 #include "tests/engine/kinds/stored.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 TEST(SeparationTable, IsInTheOrderOfTheRanking) {
@@ -43,4 +43,4 @@ TEST(SeparationTable, IsInTheOrderOfTheRanking) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::sensitivity

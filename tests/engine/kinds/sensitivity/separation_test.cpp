@@ -8,7 +8,7 @@
 
 #include "tests/support/fake_model.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 /// A model whose separation is proportional to s = -z, the height that the tests choose. delta_2 has no effect.
@@ -78,4 +78,4 @@ TEST(Separation, SingularPoseLeavesSharesOpen) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::sensitivity

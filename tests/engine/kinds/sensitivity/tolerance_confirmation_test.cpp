@@ -12,7 +12,7 @@
 
 /// Computes tolerances within a limit from a sensitivity study, and confirms them with a Monte Carlo study. The
 /// response of the fake mechanism is |sum of w_p e_p|, so the prediction is exact except for its sampling error.
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 constexpr std::size_t kPoses = 6;
@@ -32,7 +32,7 @@ Study study_with(double background) {
   study.errors.by_factor = {Distribution::normal(1e-3), Distribution::uniform(2e-3), Distribution::normal(1e-3)};
   study.poses.count = kPoses;
   study.poses.workspace = {{-0.3, -0.2}, {-0.1, 0.1}, {-0.1, 0.1}};
-  study.analysis.kind = &kSensitivityStudy;
+  study.analysis.kind = &kStudy;
   study.analysis.factors = {FactorIndex(1), FactorIndex(2)};
   study.analysis.samples = kSamples;
   study.analysis.background = Background{{FactorIndex(0)}, background, 0.0};
@@ -57,7 +57,7 @@ struct Found {
   test::FakeModel model;
   Study study;
   Plan plan;
-  SensitivityResult result;
+  Result result;
   std::vector<double> sigma;
 };
 
@@ -87,11 +87,11 @@ TEST(ToleranceConfirmation, MonteCarloConfirmsTheLimit) {
         limit_tolerances(found.response(), prediction, found.sigma, limit, std::vector(found.sigma.size(), HUGE_VAL));
     for (const auto* chosen : {&tolerances.equal_effect, &tolerances.equal_tolerance}) {
       Study confirmation = found.study;
-      confirmation.analysis.kind = &kMonteCarloStudy;
+      confirmation.analysis.kind = &monte_carlo::kStudy;
       confirmation.errors.by_factor[1] = Distribution::normal((*chosen)[0]);
       confirmation.seed = 12;
       const Plan plan(confirmation, found.plan.poses());
-      const auto confirmed = run_monte_carlo(plan, found.model, confirmation.analysis, {}).value();
+      const auto confirmed = monte_carlo::run_monte_carlo(plan, found.model, confirmation.analysis, {}).value();
       const double mean = confirmed.overall_mean(kResponse);
       const double square = mean * mean + std::pow(confirmed.overall_std(kResponse), 2);
       EXPECT_LT(mean, limit);
@@ -112,4 +112,4 @@ TEST(ToleranceConfirmation, MonteCarloConfirmsTheLimit) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::sensitivity

@@ -28,16 +28,17 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 class ToleranceFiles : public testing::Test {
  protected:
   StoredResult written(const std::vector<double>& index) {
-    SensitivityResult found = example_.sensitivity();
+    sensitivity::Result found = example_.sensitivity();
     found.global = {{2, 2}, index};
-    set_references(example_.study, found);
+    sensitivity::set_references(example_.study, found);
     write_result(path_, example_.study, example_.poses, found, example_.facts);
     return read_result(path_);
   }
 
   /// Tolerances for the first response. epsilon_1 has no effect, so its tolerance is infinite.
-  static ResponseTolerances some(bool limit) {
-    ResponseTolerances tolerances{0, {ReferenceError{1, 2e-3}, {kInfinity, 2e-3}, {0.0, 1.0}, {}}, std::nullopt};
+  static sensitivity::ResponseTolerances some(bool limit) {
+    sensitivity::ResponseTolerances tolerances{
+        0, {ReferenceError{1, 2e-3}, {kInfinity, 2e-3}, {0.0, 1.0}, {}}, std::nullopt};
     if (limit) tolerances.limit = LimitTolerances{1e-3, {0.25, 4e-3}, {0.25, 1e-5}};
     return tolerances;
   }
@@ -51,11 +52,12 @@ class ToleranceFiles : public testing::Test {
 };
 
 TEST_F(ToleranceFiles, ReferenceReadsBackAsChosenByTheStudy) {
-  asked_of<SensitivityOptions>(example_.study.analysis).reference = ToleranceReference{FactorIndex(0), 3e-3};
+  asked_of<sensitivity::Options>(example_.study.analysis).reference =
+      sensitivity::ToleranceReference{FactorIndex(0), 3e-3};
   const StoredResult stored = written({1.0, 2.0, 3.0, 4.0});
-  for (const std::size_t p : {0U, 1U}) EXPECT_EQ(sensitivity_of(stored).limb(p), 1U);
+  for (const std::size_t p : {0U, 1U}) EXPECT_EQ(sensitivity::sensitivity_of(stored).limb(p), 1U);
   for (const std::size_t r : {0U, 1U}) {
-    const auto reference = sensitivity_of(stored).reference(r);
+    const auto reference = sensitivity::sensitivity_of(stored).reference(r);
     ASSERT_TRUE(reference);
     EXPECT_EQ(reference->factor, 1U);  // delta_1 is the second varied error of the study
     EXPECT_EQ(reference->tolerance, 3e-3);
@@ -64,13 +66,14 @@ TEST_F(ToleranceFiles, ReferenceReadsBackAsChosenByTheStudy) {
 
 TEST_F(ToleranceFiles, ReferenceIsTheSmallestEffectOrTheStudysOwn) {
   const StoredResult stored = written({1e-5, 2.0, 0.0, 0.0});  // times sigma: effects of 2.9e-6 and 2e-3
-  EXPECT_EQ(sensitivity_of(stored).reference(0)->factor, 0U);
-  EXPECT_EQ(sensitivity_of(stored).reference(0)->tolerance, kDegree);
-  EXPECT_FALSE(sensitivity_of(stored).reference(1));
+  EXPECT_EQ(sensitivity::sensitivity_of(stored).reference(0)->factor, 0U);
+  EXPECT_EQ(sensitivity::sensitivity_of(stored).reference(0)->tolerance, kDegree);
+  EXPECT_FALSE(sensitivity::sensitivity_of(stored).reference(1));
 }
 
 TEST_F(ToleranceFiles, ReferenceWithoutEffectLeavesTolerancesUnknown) {
-  asked_of<SensitivityOptions>(example_.study.analysis).reference = ToleranceReference{FactorIndex(0), 3e-3};
+  asked_of<sensitivity::Options>(example_.study.analysis).reference =
+      sensitivity::ToleranceReference{FactorIndex(0), 3e-3};
   written({1.0, 0.0, 1.0, 2.0});
   const auto found = h5::File::open(path_).read<double>("/tolerances/equal_effect");
   EXPECT_TRUE(std::isnan(found[0]) && std::isnan(found[1]));
@@ -85,7 +88,7 @@ TEST_F(ToleranceFiles, ErrorWithoutEffectHasNoLimit) {
 
 TEST_F(ToleranceFiles, TableReadsWithoutKnowingTheProgram) {
   const StoredResult stored = written({0.0, 2.0, 1.0, 2.0});
-  const std::string path = write_tolerances(folder_ / "new/folder", stored, some(true));
+  const std::string path = sensitivity::write_tolerances(folder_ / "new/folder", stored, some(true));
   EXPECT_EQ(path, folder_ / "new/folder/tolerances.csv");
   EXPECT_EQ(
       read_bytes(path),
@@ -100,18 +103,21 @@ TEST_F(ToleranceFiles, TableReadsWithoutKnowingTheProgram) {
 
 TEST_F(ToleranceFiles, WithoutALimitTheTableHasNoColumnsForIt) {
   const StoredResult stored = written({0.0, 2.0, 1.0, 2.0});
-  EXPECT_EQ(read_bytes(write_tolerances(folder_.path(), stored, some(false))).find("limit"), std::string::npos);
+  EXPECT_EQ(read_bytes(sensitivity::write_tolerances(folder_.path(), stored, some(false))).find("limit"),
+            std::string::npos);
 }
 
 TEST_F(ToleranceFiles, ConfirmationVariesErrorsByTheirTolerances) {
-  asked_of<SensitivityOptions>(example_.study.analysis).reference = ToleranceReference{FactorIndex(0), 3e-3};
+  asked_of<sensitivity::Options>(example_.study.analysis).reference =
+      sensitivity::ToleranceReference{FactorIndex(0), 3e-3};
   example_.study.analysis.background = Background{{FactorIndex(2)}, 1e-3, 0.0};
   example_.study.seed = 77;
-  const auto paths = write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_).paths;
+  const auto paths =
+      sensitivity::write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_).paths;
   ASSERT_EQ(paths, (std::vector<std::string>{folder_ / "out/confirm_equal_effect.toml",
                                              folder_ / "out/confirm_equal_tolerance.toml"}));
   const Study equal_effect = read_back(paths[0]);
-  EXPECT_EQ(equal_effect.analysis.kind, &kMonteCarloStudy);
+  EXPECT_EQ(equal_effect.analysis.kind, &monte_carlo::kStudy);
   EXPECT_EQ(equal_effect.analysis.factors, example_.study.analysis.factors);
   EXPECT_EQ(equal_effect.analysis.samples, example_.study.analysis.samples);
   EXPECT_EQ(equal_effect.analysis.background->linear, 1e-3);
@@ -128,10 +134,10 @@ TEST_F(ToleranceFiles, ConfirmationVariesErrorsByTheirTolerances) {
 }
 
 TEST_F(ToleranceFiles, StudiesBeginWithTheCaveat) {
-  ResponseTolerances tolerances = some(true);
+  sensitivity::ResponseTolerances tolerances = some(true);
   tolerances.caveat = "they may not hold";
   for (const std::string& path :
-       write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), tolerances, catalog_).paths) {
+       sensitivity::write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), tolerances, catalog_).paths) {
     EXPECT_TRUE(read_bytes(path).starts_with("# they may not hold\n"));
     read_back(path);
   }
@@ -141,7 +147,8 @@ TEST_F(ToleranceFiles, ConfirmationTakesThePosesOfAFileAlong) {
   example_.study.poses = {};
   example_.study.poses.select = PoseSelection::Select::file;
   example_.study.poses.file = "gone/poses.csv";
-  const auto paths = write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_).paths;
+  const auto paths =
+      sensitivity::write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_).paths;
   const PoseSet found = read_back(paths[0]).poses.from_file.points;
   ASSERT_EQ(found.size(), example_.poses.poses.size());
   for (std::size_t c = 0; c < found.coordinates(); ++c) EXPECT_EQ(found.column(c), example_.poses.poses.column(c));
@@ -151,14 +158,16 @@ TEST_F(ToleranceFiles, ConfirmationTakesATrajectorysPosesAlong) {
   example_.study.poses = {};
   example_.study.poses.select = PoseSelection::Select::trajectory;
   example_.study.poses.trajectory.emplace().file = "gone/curve.csv";
-  const auto paths = write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_).paths;
+  const auto paths =
+      sensitivity::write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_).paths;
   const Study study = read_back(paths[0]);
   EXPECT_EQ(study.poses.select, PoseSelection::Select::file);
   EXPECT_EQ(study.poses.from_file.points.size(), example_.poses.poses.size());
 }
 
 TEST_F(ToleranceFiles, StudiesClaimNothingBeforeTheyAreRun) {
-  const auto paths = write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_).paths;
+  const auto paths =
+      sensitivity::write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_).paths;
   EXPECT_EQ(read_back(paths[0]).title,
             "Tests tolerances of equal effect against a limit of 0.0572957795131 deg on the root mean square of "
             "angular_deformation");
@@ -167,12 +176,12 @@ TEST_F(ToleranceFiles, StudiesClaimNothingBeforeTheyAreRun) {
 
 TEST_F(ToleranceFiles, StudiesCarryTheLimitThatJudgesThem) {
   for (const std::string& path :
-       write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_).paths) {
+       sensitivity::write_confirmation(folder_ / "out", written({0.0, 2.0, 1.0, 2.0}), some(true), catalog_).paths) {
     const Analysis analysis = read_back(path).analysis;
     ASSERT_EQ(analysis.limits.size(), 1U);
     EXPECT_EQ(analysis.limits[0].response, 0U);
     EXPECT_EQ(analysis.limits[0].allowed.to(), 1e-3);
-    EXPECT_EQ(asked_of<MonteCarloOptions>(analysis).judge, Judge::rms);
+    EXPECT_EQ(asked_of<monte_carlo::Options>(analysis).judge, Judge::rms);
   }
 }
 
@@ -184,10 +193,10 @@ TEST_F(ToleranceFiles, ClaimWhatIsWrittenAndNoMore) {
   for (const bool limit : {false, true}) {
     const std::string out = folder_ / (limit ? "with" : "without");
     OutputFolder output(out, stored.content_sha256);
-    claim_tolerance_files(output, stored, some(limit), catalog_);
+    sensitivity::claim_tolerance_files(output, stored, some(limit), catalog_);
     output.fill([&] {
-      if (limit) write_confirmation(out, stored, some(limit), catalog_);
-      write_tolerances(out, stored, some(limit));
+      if (limit) sensitivity::write_confirmation(out, stored, some(limit), catalog_);
+      sensitivity::write_tolerances(out, stored, some(limit));
     });
     const std::string list = read_bytes(output.file(kManifest));
     std::size_t files = 0;

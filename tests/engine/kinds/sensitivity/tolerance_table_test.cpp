@@ -8,7 +8,7 @@
 #include "engine/report/table.h"
 #include "tests/engine/kinds/sensitivity/ranked_result.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -95,4 +95,4 @@ TEST(ToleranceTable, SaysWhichErrorsAreNotNormal) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::sensitivity

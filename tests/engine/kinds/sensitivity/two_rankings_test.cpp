@@ -13,7 +13,7 @@
 #include "engine/report/tables.h"
 #include "tests/engine/kinds/sensitivity/ranked_result.h"
 
-namespace poesy {
+namespace poesy::sensitivity {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -181,4 +181,4 @@ TEST(TwoRankings, AsJsonHaveBothResultsAndTheTau) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::sensitivity

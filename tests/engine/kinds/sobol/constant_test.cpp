@@ -88,11 +88,11 @@ bool all_nan(std::span<const double> values) {
 }
 
 TEST(SobolOfConstants, HaveNoShares) {
-  Found study(kSobolStudy);
-  asked_of<SobolOptions>(study.study.analysis).second_order = true;
-  asked_of<SobolOptions>(study.study.analysis).shapley = true;
+  Found study(sobol::kStudy);
+  asked_of<sobol::Options>(study.study.analysis).second_order = true;
+  asked_of<sobol::Options>(study.study.analysis).shapley = true;
   const StudyResult result = study.run();
-  const auto& found = result.as<SobolResult>();
+  const auto& found = result.as<sobol::Result>();
   EXPECT_TRUE(std::ranges::equal(found.varies, std::array{1, 0, 1}));
   const auto& [conf_level, S1, ST] = found.aggregated;
   for (const auto* list : {&S1.value, &ST.value, &ST.ci_low, &found.Sh.value}) {
@@ -108,8 +108,8 @@ TEST(SobolOfConstants, HaveNoShares) {
 
 /// At the pose where the response is constant it has no indices; at the other pose x1 has the index 1.
 TEST(SobolOfConstants, AreJudgedPoseByPose) {
-  const StudyResult result = Found(kSobolStudy).run();
-  const auto& [conf_level, S1, ST] = result.as<SobolResult>().at_poses;
+  const StudyResult result = Found(sobol::kStudy).run();
+  const auto& [conf_level, S1, ST] = result.as<sobol::Result>().at_poses;
   EXPECT_TRUE(all_nan(S1.value.row(kStill)));
   for (std::size_t p = 0; p < 2; ++p) EXPECT_TRUE(std::isnan(ST.value(kAtOnePose, p, 0)));
   EXPECT_EQ(ST.value(kAtOnePose, 0, 1), 1.0);
@@ -117,8 +117,8 @@ TEST(SobolOfConstants, AreJudgedPoseByPose) {
 }
 
 TEST(SobolOfConstants, VectorsAreJudgedByTheirComponents) {
-  const StudyResult result = Found(kSobolStudy).run();
-  const auto& found = result.as<SobolResult>();
+  const StudyResult result = Found(sobol::kStudy).run();
+  const auto& found = result.as<sobol::Result>();
   ASSERT_EQ(found.vectors, (std::vector<std::string>{"some_v", "none_v"}));
   EXPECT_TRUE(std::ranges::equal(found.vector_varies, std::array{1, 0}));
   EXPECT_TRUE(all_nan(found.of_vectors.ST.value.row(1)));
@@ -128,9 +128,9 @@ TEST(SobolOfConstants, VectorsAreJudgedByTheirComponents) {
 
 /// Adaptive sampling must not wait for the interval of ST of a constant response, which never becomes narrower.
 TEST(SobolOfConstants, NeedNoSamples) {
-  Found study(kSobolStudy, 100'000, AdaptiveSamples{1000, 0.2});
+  Found study(sobol::kStudy, 100'000, AdaptiveSamples{1000, 0.2});
   const StudyResult result = study.run();
-  const auto& found = result.as<SobolResult>();
+  const auto& found = result.as<sobol::Result>();
   ASSERT_TRUE(found.convergence);
   EXPECT_EQ(found.convergence->samples.front(), 1000u);
   EXPECT_EQ(found.convergence->reached[kStill], 1);
@@ -138,12 +138,12 @@ TEST(SobolOfConstants, NeedNoSamples) {
 
 TEST(MonteCarloOfConstants, HasNoIndicesAndNoMainEffects) {
   for (const Draws draws : {Draws::per_pose, Draws::per_machine}) {
-    Found study(kMonteCarloStudy);
+    Found study(monte_carlo::kStudy);
     study.study.analysis.draws = draws;
     const StudyResult result = study.run();
-    const auto& found = result.as<MonteCarloResult>();
+    const auto& found = result.as<monte_carlo::Result>();
     EXPECT_TRUE(std::ranges::equal(found.varies, std::array{1, 0, 1}));
-    const MainEffects& effects = found.effects.effects;
+    const monte_carlo::MainEffects& effects = found.effects.effects;
     EXPECT_TRUE(all_nan(effects.s1.row(kStill)));
     EXPECT_TRUE(all_nan(effects.mean.row(kStill)));
     EXPECT_NEAR(effects.s1(kMoving, 1), 0.8, 0.05);

@@ -27,14 +27,14 @@ void expect_same(const Array<double, Axes...>& found, const Array<double, Axes..
 }
 
 template <NamedAxis... Axes>
-void expect_same(const Shares<Axes...>& found, const Shares<Axes...>& written) {
+void expect_same(const sobol::Shares<Axes...>& found, const sobol::Shares<Axes...>& written) {
   expect_same(found.value, written.value);
   expect_same(found.ci_low, written.ci_low);
   expect_same(found.ci_high, written.ci_high);
 }
 
 template <NamedAxis... Axes>
-void expect_same(const SobolIndices<Axes...>& found, const SobolIndices<Axes...>& written) {
+void expect_same(const sobol::SobolIndices<Axes...>& found, const sobol::SobolIndices<Axes...>& written) {
   EXPECT_EQ(found.conf_level, written.conf_level);
   expect_same(found.S1, written.S1);
   expect_same(found.ST, written.ST);
@@ -44,10 +44,10 @@ TEST(SobolFields, AreReadAsTheyWereWritten) {
   const TempFolder folder;
   const std::string path = folder.path() + "/sobol.h5";
   Example example;
-  const SobolResult written = example.sobol();
+  const sobol::Result written = example.sobol();
   example.write_sobol(path);
   const StoredResult stored = read_result(path);
-  const SobolResult& found = sobol_of(stored);
+  const sobol::Result& found = sobol::sobol_of(stored);
   EXPECT_FALSE(found.joined);
   EXPECT_EQ(found.group_names, written.group_names);
   EXPECT_EQ(found.vectors, written.vectors);
@@ -68,15 +68,15 @@ TEST(SobolFields, SayWhatDoesNotVaryWhereSomethingDoesNot) {
   const std::string path = folder.path() + "/sobol.h5";
   Example example;
   example.write_sobol(path);
-  EXPECT_TRUE(sobol_of(read_result(path)).varies.empty());
+  EXPECT_TRUE(sobol::sobol_of(read_result(path)).varies.empty());
   EXPECT_TRUE(read_result(path).constant.empty());
-  SobolResult result = example.sobol();
+  sobol::Result result = example.sobol();
   result.varies = decltype(result.varies)({2}, {0, 1});
   result.vector_varies = decltype(result.vector_varies)({2}, {1, 0});
   write_result(path, example.study, example.poses, result, example.facts);
   const StoredResult stored = read_result(path);
-  EXPECT_EQ(sobol_of(stored).varies, result.varies);
-  EXPECT_EQ(sobol_of(stored).vector_varies, result.vector_varies);
+  EXPECT_EQ(sobol::sobol_of(stored).varies, result.varies);
+  EXPECT_EQ(sobol::sobol_of(stored).vector_varies, result.vector_varies);
   EXPECT_EQ(stored.constant, std::vector<std::size_t>{0});
 }
 
@@ -84,15 +84,15 @@ TEST(SobolFields, GroupsAreAnAxisOfTheirOwn) {
   const TempFolder folder;
   const std::string path = folder.path() + "/sobol.h5";
   Example example;
-  SobolResult result = example.sobol();
-  asked_of<SobolOptions>(example.study.analysis).groups_by = GroupsBy::limb;
+  sobol::Result result = example.sobol();
+  asked_of<sobol::Options>(example.study.analysis).groups_by = sobol::GroupsBy::limb;
   result.joined = true;
   result.group_names = {"limb 1", "limb 2"};
   write_result(path, example.study, example.poses, result, example.facts);
   const StoredResult stored = read_result(path);
-  EXPECT_TRUE(sobol_of(stored).joined);
-  EXPECT_EQ(sobol_of(stored).group_names, result.group_names);
-  EXPECT_EQ(sobol_of(stored).group_members, result.group_members);
+  EXPECT_TRUE(sobol::sobol_of(stored).joined);
+  EXPECT_EQ(sobol::sobol_of(stored).group_names, result.group_names);
+  EXPECT_EQ(sobol::sobol_of(stored).group_members, result.group_members);
 }
 
 }  // namespace

@@ -137,15 +137,15 @@ std::vector<Reference> references() {
 }
 
 /// Runs a study of a function. places: the poses.
-SobolResult run(const Study& study, const FunctionModel& model, std::vector<double> places = {0.5},
-                std::size_t threads = 2) {
+sobol::Result run(const Study& study, const FunctionModel& model, std::vector<double> places = {0.5},
+                  std::size_t threads = 2) {
   const auto result = run_study(study, model, PoseSet(1, std::move(places)), {.threads = threads});
-  return result->as<SobolResult>();
+  return result->as<sobol::Result>();
 }
 
 struct Case {
   Reference reference;
-  Design design;
+  sobol::Design design;
 };
 
 class Of : public ::testing::TestWithParam<Case> {};
@@ -153,7 +153,8 @@ class Of : public ::testing::TestWithParam<Case> {};
 std::vector<Case> cases() {
   std::vector<Case> list;
   for (const Reference& reference : references()) {
-    for (const Design design : {Design::random, Design::lhs, Design::sobol}) list.push_back({reference, design});
+    for (const sobol::Design design : {sobol::Design::random, sobol::Design::lhs, sobol::Design::sobol})
+      list.push_back({reference, design});
   }
   return list;
 }
@@ -169,10 +170,10 @@ TEST_P(Of, AreWithinTheirIntervals) {
   const auto& [reference, design] = GetParam();
   const FunctionModel model(reference.indices.size(), {"y"}, reference.function);
   const CatalogEntry entry{model.description(), nullptr};
-  Study study = function_study(entry, kSobolStudy, reference.distribution, 65536);
+  Study study = function_study(entry, sobol::kStudy, reference.distribution, 65536);
   study.analysis.conf_level = 1.0 - 1e-5;
-  asked_of<SobolOptions>(study.analysis).design = design;
-  const SobolResult found = run(study, model);
+  asked_of<sobol::Options>(study.analysis).design = design;
+  const sobol::Result found = run(study, model);
   for (std::size_t p = 0; p < reference.indices.size(); ++p) {
     const auto [S1, ST] = reference.indices[p];
     if (S1 == kAny) continue;
@@ -192,7 +193,7 @@ TEST(SobolPanel, AbsorbedErrorsAreZeroInEveryBit) {
   const auto function = [](std::span<const double> x, double, std::span<double> y) { y[0] = std::exp(x[0] + x[2]); };
   const FunctionModel model(3, {"y"}, function);
   const CatalogEntry entry{model.description(), nullptr};
-  const SobolResult found = run(function_study(entry, kSobolStudy, Distribution::normal(1.0), 300), model);
+  const sobol::Result found = run(function_study(entry, sobol::kStudy, Distribution::normal(1.0), 300), model);
   for (const auto* shares : {&found.at_poses.S1, &found.at_poses.ST}) {
     for (const auto* values : {&shares->value, &shares->ci_low, &shares->ci_high}) EXPECT_EQ((*values)(0, 1, 0), 0.0);
   }
@@ -209,9 +210,9 @@ void linear_vector(std::span<const double> x, double place, std::span<double> y)
 TEST(SobolPanel, LinearVectorsHaveMeanSquareShares) {
   const FunctionModel model(3, {"tip_x", "tip_y", "tip_z"}, linear_vector);
   const CatalogEntry entry{model.description(), nullptr};
-  Study study = function_study(entry, kSobolStudy, Distribution::normal(0.1), 20000);
+  Study study = function_study(entry, sobol::kStudy, Distribution::normal(0.1), 20000);
   study.analysis.conf_level = 1.0 - 1e-4;
-  const SobolResult found = run(study, model, {0.0, 1.0});
+  const sobol::Result found = run(study, model, {0.0, 1.0});
   // The sums of the squared coefficients over both places.
   const double squares[] = {4.0 + 16.0 + 2.0 * 0.25, 1.0 + 4.0 + 1.0, 2.0 * 9.0};
   const double all = squares[0] + squares[1] + squares[2];
@@ -239,9 +240,9 @@ TEST(SobolPanel, AggregatesPosesByTheirVariances) {
   };
   const FunctionModel model(2, {"y"}, function);
   const CatalogEntry entry{model.description(), nullptr};
-  Study study = function_study(entry, kSobolStudy, Distribution::normal(1.0), 20000);
+  Study study = function_study(entry, sobol::kStudy, Distribution::normal(1.0), 20000);
   study.analysis.conf_level = 1.0 - 1e-4;
-  const SobolResult found = run(study, model, {0.0, 1.0});
+  const sobol::Result found = run(study, model, {0.0, 1.0});
   EXPECT_LT(found.aggregated.ST.ci_low(0, 0), 0.2);
   EXPECT_GT(found.aggregated.ST.ci_high(0, 0), 0.2);
   EXPECT_LT(found.aggregated.ST.ci_low(0, 1), 0.8);
@@ -252,10 +253,10 @@ TEST(SobolPanel, AggregatesPosesByTheirVariances) {
 TEST(SobolPanel, FindsTheInteractionOfIshigamisFirstAndThird) {
   const FunctionModel model(3, {"y"}, ishigami);
   const CatalogEntry entry{model.description(), nullptr};
-  Study study = function_study(entry, kSobolStudy, Distribution::uniform(std::numbers::pi), 20000);
+  Study study = function_study(entry, sobol::kStudy, Distribution::uniform(std::numbers::pi), 20000);
   study.analysis.conf_level = 1.0 - 1e-4;
-  asked_of<SobolOptions>(study.analysis).second_order = true;
-  const SobolResult found = run(study, model);
+  asked_of<sobol::Options>(study.analysis).second_order = true;
+  const sobol::Result found = run(study, model);
   const auto expect_within = [&](std::size_t i, std::size_t j, double S2) {
     EXPECT_LT(found.S2.ci_low(0, i, j), S2);
     EXPECT_GT(found.S2.ci_high(0, i, j), S2);
@@ -270,12 +271,12 @@ TEST(SobolPanel, FindsTheInteractionOfIshigamisFirstAndThird) {
 TEST(SobolPanel, TakesErrorsOfAGroupTogether) {
   const FunctionModel model(3, {"y"}, ishigami);
   const CatalogEntry entry{model.description(), nullptr};
-  Study study = function_study(entry, kSobolStudy, Distribution::uniform(std::numbers::pi), 20000);
+  Study study = function_study(entry, sobol::kStudy, Distribution::uniform(std::numbers::pi), 20000);
   study.analysis.conf_level = 1.0 - 1e-4;
-  SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
-  asked.groups_by = GroupsBy::name;
+  sobol::Options& asked = asked_of<sobol::Options>(study.analysis);
+  asked.groups_by = sobol::GroupsBy::name;
   asked.named_groups = {{"both", {"x1", "x3"}}};
-  const SobolResult found = run(study, model);
+  const sobol::Result found = run(study, model);
   EXPECT_EQ(found.group_names, (std::vector<std::string>{"both", "others"}));
   EXPECT_EQ(found.group_members, (std::vector<std::string>{"x1 x3", "x2"}));
   const double closed = 1.0 - 0.44241114479004;
@@ -287,9 +288,9 @@ TEST(SobolPanel, TakesErrorsOfAGroupTogether) {
 TEST(SobolPanel, EndsWhenEveryIntervalIsNarrowEnough) {
   const FunctionModel model(3, {"y"}, ishigami);
   const CatalogEntry entry{model.description(), nullptr};
-  Study study = function_study(entry, kSobolStudy, Distribution::uniform(std::numbers::pi), 100'000);
+  Study study = function_study(entry, sobol::kStudy, Distribution::uniform(std::numbers::pi), 100'000);
   study.analysis.adaptive = {.min = 1000, .relative_error = 0.05};
-  const SobolResult found = run(study, model);
+  const sobol::Result found = run(study, model);
   ASSERT_TRUE(found.convergence);
   EXPECT_GT(found.n(0, 0, 0), 1000u);
   EXPECT_LT(found.n(0, 0, 0), 100'000u);
@@ -304,7 +305,7 @@ TEST(SobolPanel, EndsWhenEveryIntervalIsNarrowEnough) {
   EXPECT_EQ(run(fixed, model).aggregated.ST.value, found.aggregated.ST.value);
 }
 
-void expect_shapley(const SobolResult& found, const std::vector<double>& expected) {
+void expect_shapley(const sobol::Result& found, const std::vector<double>& expected) {
   double sum = 0.0;
   for (std::size_t p = 0; p < expected.size(); ++p) {
     EXPECT_LE(found.Sh.ci_low(0, p), expected[p] + 5e-9) << p;
@@ -315,7 +316,7 @@ void expect_shapley(const SobolResult& found, const std::vector<double>& expecte
   EXPECT_NEAR(sum, 1.0, 1e-12);
 }
 
-class KnownShapley : public ::testing::TestWithParam<Design> {};
+class KnownShapley : public ::testing::TestWithParam<sobol::Design> {};
 
 // 13 intervals at a level of 1 - 1e-5 for each design. The linear function's effects are known in closed form (Owen and
 // Prieur 2017, SIAM/ASA J. Uncertain. Quantif. 5, 986-1002).
@@ -324,9 +325,9 @@ TEST_P(KnownShapley, IsWithinItsInterval) {
   const CatalogEntry entry{model.description(), nullptr};
   Study study = correlated_study(entry, 65536);
   study.analysis.conf_level = 1.0 - 1e-5;
-  asked_of<SobolOptions>(study.analysis).design = GetParam();
-  asked_of<SobolOptions>(study.analysis).shapley = true;
-  const SobolResult found = run(study, model);
+  asked_of<sobol::Options>(study.analysis).design = GetParam();
+  asked_of<sobol::Options>(study.analysis).shapley = true;
+  const sobol::Result found = run(study, model);
   expect_shapley(found, {0.10416667, 0.41822917, 0.47760417});
   EXPECT_NEAR(found.variance(0, 0), 9.6, 0.3);
   // The first error is independent of the others, so its S1 and ST are known too. Correlated errors have no S1 and ST.
@@ -341,7 +342,8 @@ TEST_P(KnownShapley, IsWithinItsInterval) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Designs, KnownShapley, ::testing::Values(Design::random, Design::lhs, Design::sobol),
+INSTANTIATE_TEST_SUITE_P(Designs, KnownShapley,
+                         ::testing::Values(sobol::Design::random, sobol::Design::lhs, sobol::Design::sobol),
                          [](const auto& of) { return std::string(name(of.param)); });
 
 // For independent errors the Shapley effect is S1 plus an equal part of each interaction. The first and the third error
@@ -349,15 +351,15 @@ INSTANTIATE_TEST_SUITE_P(Designs, KnownShapley, ::testing::Values(Design::random
 TEST(SobolPanel, ShapleyEffectsDivideInteractionsEvenly) {
   const FunctionModel model(4, {"y"}, ishigami);
   const CatalogEntry entry{model.description(), nullptr};
-  Study study = function_study(entry, kSobolStudy, Distribution::uniform(std::numbers::pi), 65536);
+  Study study = function_study(entry, sobol::kStudy, Distribution::uniform(std::numbers::pi), 65536);
   study.analysis.conf_level = 1.0 - 1e-5;
-  asked_of<SobolOptions>(study.analysis).shapley = true;
-  const SobolResult found = run(study, model);
+  asked_of<sobol::Options>(study.analysis).shapley = true;
+  const sobol::Result found = run(study, model);
   const double half = 0.5 * 0.24368366406215;
   expect_shapley(found, {0.31390519114781 + half, 0.44241114479004, half, 0.0});
   EXPECT_EQ(found.Sh.value(0, 3), 0.0);
   EXPECT_EQ(found.Sh.ci_high(0, 3), 0.0);
-  asked_of<SobolOptions>(study.analysis).shapley = false;
+  asked_of<sobol::Options>(study.analysis).shapley = false;
   EXPECT_EQ(run(study, model).aggregated.ST.value, found.aggregated.ST.value);
 }
 
@@ -366,11 +368,11 @@ TEST(SobolPanel, GroupsThatHoldCorrelatedErrorsHaveIndices) {
   const CatalogEntry entry{model.description(), nullptr};
   Study study = correlated_study(entry, 20000);
   study.analysis.conf_level = 1.0 - 1e-5;
-  SobolOptions& asked = asked_of<SobolOptions>(study.analysis);
-  asked.groups_by = GroupsBy::name;
+  sobol::Options& asked = asked_of<sobol::Options>(study.analysis);
+  asked.groups_by = sobol::GroupsBy::name;
   asked.named_groups = {{"two", {"x2", "x3"}}};
   asked.shapley = true;
-  const SobolResult found = run(study, model);
+  const sobol::Result found = run(study, model);
   const double two = 8.6 / 9.6;
   expect_shapley(found, {two, 1.0 - two});
   for (const auto* ends : {&found.aggregated.S1.ci_low, &found.aggregated.ST.ci_low}) EXPECT_LT((*ends)(0, 0), two);
@@ -383,11 +385,11 @@ TEST(SobolPanel, ShapleyEffectsOfTwoThatAreAlikeAreEqual) {
   const FunctionModel model(2, {"y"}, product);
   const CatalogEntry entry{model.description(), nullptr};
   for (const Distribution& distribution : {Distribution::normal(1.0), Distribution::uniform(2.0)}) {
-    Study study = function_study(entry, kSobolStudy, distribution, 20000);
+    Study study = function_study(entry, sobol::kStudy, distribution, 20000);
     study.errors.correlated = {{{FactorIndex(0), FactorIndex(1)}, {1.0, 0.7, 0.7, 1.0}}};
     study.analysis.conf_level = 1.0 - 1e-5;
-    asked_of<SobolOptions>(study.analysis).shapley = true;
-    const SobolResult found = run(study, model);
+    asked_of<sobol::Options>(study.analysis).shapley = true;
+    const sobol::Result found = run(study, model);
     EXPECT_LT(found.Sh.ci_low(0, 0), 0.5);
     EXPECT_GT(found.Sh.ci_high(0, 0), 0.5);
     EXPECT_LT(found.Sh.ci_high(0, 0) - found.Sh.ci_low(0, 0), 0.1);
@@ -398,9 +400,9 @@ TEST(SobolPanel, ShapleyEffectsHaveTheSameBitsOnOneThread) {
   const FunctionModel model(3, {"y"}, sum_of_three);
   const CatalogEntry entry{model.description(), nullptr};
   Study study = correlated_study(entry, 1000);
-  asked_of<SobolOptions>(study.analysis).shapley = true;
-  const SobolResult one = run(study, model, {0.2, 0.4}, 1);
-  const SobolResult two = run(study, model, {0.2, 0.4}, 2);
+  asked_of<sobol::Options>(study.analysis).shapley = true;
+  const sobol::Result one = run(study, model, {0.2, 0.4}, 1);
+  const sobol::Result two = run(study, model, {0.2, 0.4}, 2);
   EXPECT_EQ(one.Sh.value, two.Sh.value);
   EXPECT_EQ(one.Sh.ci_low, two.Sh.ci_low);
 }
@@ -412,7 +414,7 @@ TEST(SobolPanel, SaysWhichResponsesHaveNoSign) {
   };
   const FunctionModel model(2, {"signed", "length"}, function);
   const CatalogEntry entry{model.description(), nullptr};
-  const SobolResult found = run(function_study(entry, kSobolStudy, Distribution::normal(1.0), 300), model);
+  const sobol::Result found = run(function_study(entry, sobol::kStudy, Distribution::normal(1.0), 300), model);
   EXPECT_TRUE(std::ranges::equal(found.without_sign, std::vector{0, 1}));
 }
 

@@ -25,7 +25,7 @@ inline void sum_of_three(std::span<const double> x, double, std::span<double> y)
 /// A study of three normal errors with standard deviations 1, 1 and 2, of which the last two are correlated by 0.9.
 /// entry: of a function with three errors; it must outlive the study.
 inline Study correlated_study(const CatalogEntry& entry, std::size_t samples) {
-  Study study = function_study(entry, kSobolStudy, Distribution::normal(1.0), samples);
+  Study study = function_study(entry, sobol::kStudy, Distribution::normal(1.0), samples);
   study.errors.by_factor[2] = Distribution::normal(2.0);
   study.errors.correlated = {{{FactorIndex(1), FactorIndex(2)}, {1.0, 0.9, 0.9, 1.0}}};
   return study;
@@ -73,13 +73,13 @@ inline std::array<Coverage, 3> shapley_coverage(const ShapleyFunction& function,
   });
   const CatalogEntry entry{model.description(), nullptr};
   Study study = correlated_study(entry, samples);
-  asked_of<SobolOptions>(study.analysis).shapley = true;
+  asked_of<sobol::Options>(study.analysis).shapley = true;
   const std::array<double, 3> effects = function.effects();
   std::array<Coverage, 3> coverage;
   for (int r = 0; r < repetitions; ++r) {
     study.seed = seed + static_cast<std::uint64_t>(r);
     const auto result = run_study(study, model, PoseSet(1, {0.5}), {.threads = 1});
-    const auto& found = result->as<SobolResult>();
+    const auto& found = result->as<sobol::Result>();
     for (std::size_t p = 0; p < 3; ++p) coverage[p].add({found.Sh.ci_low(0, p), found.Sh.ci_high(0, p)}, effects[p]);
   }
   return coverage;

@@ -6,7 +6,7 @@
 
 #include "engine/base/error.h"
 
-namespace poesy {
+namespace poesy::sweep {
 namespace {
 
 using Values = std::vector<std::string>;
@@ -63,4 +63,4 @@ TEST(SweptNumbers, AreReadWithTheirUnits) {
 }
 
 }  // namespace
-}  // namespace poesy
+}  // namespace poesy::sweep
