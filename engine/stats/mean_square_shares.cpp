@@ -78,7 +78,7 @@ MeanSquareShares mean_square_shares(const LinearFit& fit, std::span<const std::s
   const double all = linear + rest;
   if (!varies || !(all > 0.0)) return none;
   for (Estimate& one : found.each) {
-    one = {one.value / all, {one.interval.low / all, std::min(1.0, one.interval.high / all)}};
+    one = {one.value / all, {one.interval.low / all, std::min(one.interval.high / all, 1.0)}};
   }
   found.linear = linear / all;
   const double means = squared_means(fit, rows);

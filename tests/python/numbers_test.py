@@ -8,7 +8,7 @@ import warnings
 from pathlib import Path
 
 import numpy as np
-from package import ROOT, FolderTest, main, poesy, result, study
+from package import ERRORS, ROOT, FolderTest, main, poesy, result, study
 
 
 def shown(found, *options):
@@ -153,6 +153,24 @@ class Numbers(FolderTest):
         label = found.plot.ranking().get_xlabel()
         self.assertEqual(label, f"share of the scatter of {limited[0]}")
         self.assertEqual(found.ranking("linear_deformation").value, "S1")  # this response has no limit
+
+    def test_correlated_errors_are_ranked_together(self):
+        described = study({"kind": "monte-carlo", "samples": 400, "limits": {"gap": "0.04 mm"}})
+        block = {"factors": ["delta_1_4_x", "delta_1_4_y"], "correlation": [[1, 0.9], [0.9, 1]]}
+        described["errors"] = {**ERRORS, "correlated": [block]}
+        found = poesy.run(described)
+        rows = {row["error"]: row for row in shown(found)["mean_square_shares"]["rows"]}
+        ranked = {row.name: row for row in found.ranking()}
+        self.assertEqual(set(rows), set(ranked))
+        together = ranked["2 correlated errors together"]
+        self.assertEqual(together.description, "delta_1_4_x, delta_1_4_y")
+        self.assertAlmostEqual(together.mean_square_share, rows[together.name]["share_gap"] / 100.0, places=12)
+        self.assertTrue(math.isnan(ranked["delta_1_4_x"].mean_square_share))
+        shares = [row.mean_square_share for row in ranked.values() if not math.isnan(row.mean_square_share)]
+        linear = float(found.to_xarray("yield")["linear_share"].sel(response="gap"))
+        self.assertAlmostEqual(sum(shares), linear, places=12)
+        self.assertEqual(shares, sorted(shares, reverse=True))
+        self.assertIn("scatter", found.plot.ranking().get_xlabel())
 
     def test_allocation(self):
         found = result("allocation")

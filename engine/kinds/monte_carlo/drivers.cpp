@@ -118,6 +118,20 @@ ToldErrors told_errors(const StoredResult& result, const YieldResult& yield, con
   return found;
 }
 
+ResponseShares shares_of(const YieldResult& yield, std::size_t r) {
+  ResponseShares shares{r, yield.mean_square_share.row(r), {}, yield.linear_share(r)};
+  for (std::size_t p = 0; p < shares.each.size(); ++p) {
+    if (std::isnan(shares.each[p])) {
+      shares.correlated.push_back(p);
+    } else {
+      shares.together -= shares.each[p];
+    }
+  }
+  constexpr double kRounding = 1e-12;
+  if (shares.correlated.empty() || !(shares.together > kRounding)) shares.together = 0.0;
+  return shares;
+}
+
 std::string linear_note(const StoredResult& result, const YieldResult& yield, std::size_t r) {
   if (is_first_order(result) && !(yield.linear_share(r) < kMostlyLinear)) {
     return fmt::format("{}: {}, so it is not tested whether its scatter is linear in them", result.responses[r].name,
@@ -141,16 +155,25 @@ std::string offset_note(const StoredResult& result, const YieldResult& yield, st
       percent_text(yield.offset_share(r)));
 }
 
-/// A note on the errors that come last in a table of shares although they may be large, because their shares of this
-/// response are not known; empty if there are none.
-std::string unknown_shares_note(const StoredResult& result, const YieldResult& yield, std::size_t r) {
-  std::vector<std::string> names;
-  for (std::size_t p = 0; p < result.factors.size(); ++p) {
-    if (std::isnan(yield.mean_square_share(r, p))) names.push_back(result.factors[p].name);
+/// A note that names the errors whose shares are known only together; empty if there are none.
+std::string together_note(const StoredResult& result, const ResponseShares& shares) {
+  if (shares.correlated.empty()) return {};
+  return fmt::format("together: {}; correlated errors have no shares of their own",
+                     some_names(names_of(result.factors, shares.correlated)));
+}
+
+/// Puts a line for the correlated errors together into a table of shares. columns: position of each response's share.
+void add_together(Table& table, const YieldResult& yield, std::span<const std::size_t> responses,
+                  std::span<const std::size_t> columns) {
+  const ResponseShares first = shares_of(yield, responses.front());
+  if (first.correlated.empty()) return;
+  std::vector<Cell> row{text_cell(together_text(first))};
+  row.resize(table.columns.size(), text_cell("-"));
+  for (std::size_t n = 0; n < responses.size(); ++n) {
+    row[columns[n]] = percent_cell(shares_of(yield, responses[n]).together);
   }
-  if (names.empty() || names.size() == result.factors.size()) return {};
-  return fmt::format("last, whatever their effect, because shares of correlated errors are not known: {}",
-                     some_names(names));
+  const auto larger = std::ranges::count_if(first.each, [&](double share) { return share > first.together; });
+  table.rows.insert(table.rows.begin() + larger, std::move(row));
 }
 
 Table share_table(const StoredResult& result, const YieldResult& yield, const std::vector<std::size_t>& responses) {
@@ -169,11 +192,13 @@ Table share_table(const StoredResult& result, const YieldResult& yield, const st
                                     "that of its vector; low, high: {} interval",
                                     percent_text(yield.conf_level))},
               .ranked = true};
-  if (std::string note = unknown_shares_note(result, yield, first); !note.empty()) {
+  if (std::string note = together_note(result, shares_of(yield, first)); !note.empty()) {
     table.notes.push_back(std::move(note));
   }
+  std::vector<std::size_t> shares;  // positions of the columns
   for (const std::size_t r : responses) {
     const std::string& response = result.responses[r].name;
+    shares.push_back(columns.size());
     add("share_" + response, response, yield.mean_square_share.row(r), r == first ? 0 : 1);
     add("share_ci_low_" + response, "low", yield.mean_square_share_ci_low.row(r), r == first ? 0 : 2);
     add("share_ci_high_" + response, "high", yield.mean_square_share_ci_high.row(r), r == first ? 0 : 2);
@@ -186,6 +211,7 @@ Table share_table(const StoredResult& result, const YieldResult& yield, const st
   }
   const auto share = [&](std::size_t p) { return yield.mean_square_share(first, p); };
   fill(table, largest_first(positions(result.factors.size()), share), columns);
+  add_together(table, yield, responses, shares);
   return table;
 }
 
@@ -296,15 +322,24 @@ Table change_table(const StoredResult& result, const YieldResult& yield) {
 void add_share_figure(const StoredResult& result, const YieldResult& yield, Section& section, Page& page) {
   const std::vector<std::size_t> responses = shared_responses(result, yield);
   if (responses.empty()) return;
-  const auto add = [&](const std::string& name, const MainEffects::Indices& values) {
-    return page.figures.pool.add(name, in_order(values, responses), 0.01);
+  const ResponseShares first = shares_of(yield, responses.front());
+  std::vector<std::string> names = names_of(result.factors);
+  if (!first.correlated.empty()) names.push_back(together_text(first));
+  const auto add = [&](const std::string& name, const MainEffects::Indices& values, bool has_together = false) {
+    std::vector<double> list;
+    for (const std::size_t r : responses) {
+      const std::span row = values.row(r);
+      list.insert(list.end(), row.begin(), row.end());
+      if (!first.correlated.empty()) list.push_back(has_together ? shares_of(yield, r).together : kNaN);
+    }
+    return page.figures.pool.add(name, list, 0.01);
   };
-  Bars bars{
-      {{"response", names_of(result.responses, responses)}},
-      {{"share of the scatter", std::vector(responses.size(), std::vector<std::string>{"%"}),
-        add("mean_square_share", yield.mean_square_share), add("mean_square_share_low", yield.mean_square_share_ci_low),
-        add("mean_square_share_high", yield.mean_square_share_ci_high)}},
-      names_of(result.factors)};
+  Bars bars{{{"response", names_of(result.responses, responses)}},
+            {{"share of the scatter", std::vector(responses.size(), std::vector<std::string>{"%"}),
+              add("mean_square_share", yield.mean_square_share, true),
+              add("mean_square_share_low", yield.mean_square_share_ci_low),
+              add("mean_square_share_high", yield.mean_square_share_ci_high)}},
+            std::move(names)};
   add_figure(page, section, "mean-square-shares", std::move(bars),
              "The errors that make a limited response scatter: shares of its mean square about its mean, to first "
              "order. Thin lines are intervals.");
@@ -358,7 +393,11 @@ std::optional<ResponseShares> response_shares(const StoredResult& result) {
   if (yield == nullptr) return std::nullopt;
   const std::vector<std::size_t> responses = shared_responses(result, *yield);
   if (responses.empty()) return std::nullopt;
-  return ResponseShares{responses.front(), yield->mean_square_share.row(responses.front())};
+  return shares_of(*yield, responses.front());
+}
+
+std::string together_text(const ResponseShares& shares) {
+  return counted(shares.correlated.size(), "correlated error", "correlated errors") + " together";
 }
 
 std::vector<Table> driver_tables(const StoredResult& result) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "engine/kinds/monte_carlo/result.h"
@@ -24,7 +25,12 @@ std::vector<double> in_order(const MainEffects::Indices& values, std::span<const
 struct ResponseShares {
   std::size_t response;  ///< position of the limited response that rejects most machines, among those with known shares
   std::span<const double> each;  ///< [errors] share of each error; NaN for correlated errors; refers to the result
+  std::vector<std::size_t> correlated;  ///< positions of the errors whose shares are known only together
+  double together;  ///< share of the correlated errors together: what is linear in the errors, less the other shares
 };
+
+/// Name of correlated errors as one source of scatter: "6 correlated errors together".
+std::string together_text(const ResponseShares& shares);
 
 /// The shares of errors in the scatter of one limited response; none if the result has no yield or no known shares.
 std::optional<ResponseShares> response_shares(const StoredResult& result);

@@ -403,8 +403,10 @@ std::string drivers_text(const StoredResult& result, std::size_t r) {
   const MainEffects& effects = found.effects.effects;
   const auto share = [&](std::size_t p) { return effects.s1(r, p); };
   std::vector<std::size_t> order;  // errors with an effect that differs significantly from zero
+  std::vector<std::string> unranked;
   for (std::size_t p = 0; p < result.factors.size(); ++p) {
     if (effects.s1_ci_low(r, p) > 0.0) order.push_back(p);
+    if (std::isnan(share(p))) unranked.push_back(result.factors[p].name);
   }
   std::ranges::stable_sort(order, std::ranges::greater(), share);
   order.resize(std::min(kMost, order.size()));
@@ -415,8 +417,10 @@ std::string drivers_text(const StoredResult& result, std::size_t r) {
     sum += share(p);
   }
   if (!(sum >= kLittle)) return {};
-  return fmt::format("Make smaller first what makes most of the variance of {} alone: {}.", result.responses[r].name,
+  text = fmt::format("Make smaller first what makes most of the variance of {} alone: {}.", result.responses[r].name,
                      text);
+  if (!unranked.empty()) text += fmt::format(" Not ranked, because they are correlated: {}.", some_names(unranked));
+  return text;
 }
 
 /// The share of each feature, which is the sum over its errors, and of each error that belongs to no feature.
@@ -427,8 +431,26 @@ std::map<std::string, double> shares_of_sources(const StoredResult& result, std:
   return sums;
 }
 
+/// The correlated errors as one source of scatter: "the correlated errors leg_1, leg_2 and 4 more together".
+std::string correlated_text(const StoredResult& result, const ResponseShares& shares) {
+  constexpr std::size_t kNamed = 2;
+  return "the correlated errors " + some_names(names_of(result.factors, shares.correlated), kNamed) + " together";
+}
+
+/// Advice on the mean of the response over the machines, if it adds more to the mean square than any source of scatter;
+/// else empty.
+std::string offset_text(const StoredResult& result, std::size_t r, double largest_share) {
+  const YieldResult& yield = *monte_carlo_of(result).machines->yield;
+  if (!yield.has_offset() || !(yield.offset_share(r) > (1.0 - yield.offset_share(r)) * largest_share)) return {};
+  return fmt::format(
+      "Remove first the mean of {} over the machines, {} as a root mean square: it makes {} of the mean square, and "
+      "tighter tolerances leave it as it is (background and means of errors make it). ",
+      result.responses[r].name, response_text(result.responses[r], yield.offset(r)),
+      percent_text(yield.offset_share(r)));
+}
+
 /// Advice such as "Make smaller first what adds most to the scatter of tip_z: flange (36 %), ...". It names features,
-/// and errors that belong to no feature. Empty if their shares are not known.
+/// errors that belong to no feature, and correlated errors together. Empty if their shares are not known.
 std::string limit_drivers_text(const StoredResult& result) {
   constexpr std::size_t kMost = 3;
   const auto shares = response_shares(result);
@@ -437,6 +459,7 @@ std::string limit_drivers_text(const StoredResult& result) {
   for (const auto& [name, share] : shares_of_sources(result, shares->each)) {
     if (share > 0.0) order.emplace_back(name, share);
   }
+  if (shares->together > 0.0) order.emplace_back(correlated_text(result, *shares), shares->together);
   std::ranges::stable_sort(order, std::ranges::greater(), &std::pair<std::string, double>::second);
   order.resize(std::min(kMost, order.size()));
   std::string text;
@@ -444,8 +467,9 @@ std::string limit_drivers_text(const StoredResult& result) {
     text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", name, percent_text(share));
   }
   if (text.empty()) return {};
-  return fmt::format("Make smaller first what adds most to the scatter of {}: {}.",
-                     result.responses[shares->response].name, text);
+  const std::string offset = offset_text(result, shares->response, order.front().second);
+  return fmt::format("{}Make smaller {} what adds most to the scatter of {}: {}.", offset,
+                     offset.empty() ? "first" : "then", result.responses[shares->response].name, text);
 }
 
 /// Advice on what to do next: which limits, machines or wanted yield the study needs, and which errors to make smaller.
@@ -517,7 +541,6 @@ std::vector<std::string> notes_on_far_limits(const StoredResult& result) {
 }
 
 void warn(const StoredResult& result, std::vector<std::string>& list) {
-  for (const std::string& note : notes_on_far_limits(result)) list.push_back(note + ".");
   if (std::string text = not_settled_text(result, settling(result)); !text.empty()) list.push_back(std::move(text));
 }
 
@@ -587,7 +610,8 @@ Comparable comparable(const StoredResult& result, const StoredResult&) {
 std::vector<Table> monte_carlo_tables(const StoredResult& result, const TableOptions&) {
   const Result& found = monte_carlo_of(result);
   std::vector<Table> tables;
-  if (const std::vector<std::string> notes = notes_on_far_limits(result); !notes.empty()) {
+  if (const std::vector<std::string> notes = notes_on_far_limits(result);
+      !notes.empty() && result.verdicts->yield.has_value()) {
     tables.push_back(yield_table(result, *result.verdicts));
     std::ranges::copy(notes, std::back_inserter(tables.back().notes));
   }
@@ -623,6 +647,7 @@ constinit const ReportKind kReport{
     .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
     .method = method,
     .warn = warn,
+    .far_limits = notes_on_far_limits,
     .answer = answer,
     .shown_cells = [](const StoredResult& result) { return shown_cells(result, kSummaryRows); },
     .page = add_page,

@@ -152,7 +152,7 @@ class Plots:
         factors = result.to_xarray("factors")
         names = [str(name) for name in factors["name"].values]
         if errors is None:
-            errors = [row.name for row in result.ranking(response)[:4]]
+            errors = [row.name for row in result.ranking(response) if row.name in names][:4]
         wanted = [errors] if isinstance(errors, str) else list(errors)
         for name in wanted:
             if name not in names:

@@ -77,7 +77,8 @@ class MonteCarloRow:
 @dataclass(frozen=True)
 class YieldRow:
     """An error in a study of machines with limits, and its share of the limited response's scatter, to first order.
-    NaN if the error is correlated with others."""
+    The share is NaN if the error is correlated with others; one more row, "6 correlated errors together", has the
+    share of all of them."""
 
     rank: int
     name: str
@@ -308,8 +309,17 @@ def _yield(result: Result, response: str) -> Ranking:
     shares = _with_ends(found.sel(response=response), "mean_square_share")
     changes = _with_ends(found, "change")
     names = [str(name) for name in found["factor"].values]
+    texts = [result.description("factor", name) for name in names]
+    correlated = [name for name, (value, _, _) in zip(names, shares) if math.isnan(value)]
+    if correlated:
+        alone = sum(value for value, _, _ in shares if not math.isnan(value))
+        together = float(found["linear_share"].sel(response=response)) - alone
+        names.append(f"{len(correlated)} correlated errors together")
+        shares.append((together if together > 1e-12 else 0.0, math.nan, math.nan))  # less is rounding
+        changes.append((math.nan, math.nan, math.nan))
+        texts.append(", ".join(correlated))
     rows = tuple(
-        YieldRow(rank, names[p], *shares[p], *changes[p], result.description("factor", names[p]))
+        YieldRow(rank, names[p], *shares[p], *changes[p], texts[p])
         for rank, p in enumerate(_in_order([value for value, _, _ in shares]), start=1)
     )
     title = f"Shares of the scatter of {response}, which is limited, to first order"

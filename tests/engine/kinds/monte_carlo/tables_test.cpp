@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <limits>
 #include <span>
+#include <string>
+#include <vector>
 
+#include "engine/kinds/monte_carlo/kind.h"
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/report/display.h"
 #include "engine/report/html/parts.h"
@@ -14,6 +17,7 @@
 namespace poesy::monte_carlo {
 namespace {
 
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 StoredResult example() {
@@ -264,10 +268,10 @@ TEST(MonteCarloTable, ShowsFirstWhatMakesTheLimitedResponse) {
             "Which errors a limit is up against: shares of the scatter of linear_deformation, to first order");
   std::vector<std::string> shown;
   for (const std::vector<Cell>& row : tables[0].rows) shown.push_back(row[0].text + " " + row[1].text);
-  EXPECT_EQ(shown, (std::vector<std::string>{"epsilon_1 70", "delta_3 12.5", "delta_1 10", "delta_2 5", "delta_4 -"}));
+  EXPECT_EQ(shown, (std::vector<std::string>{"epsilon_1 70", "delta_3 12.5", "delta_1 10", "delta_2 5",
+                                             "1 correlated error together 0", "delta_4 -"}));
   EXPECT_EQ(tables[0].columns[4].name, "share_ratio");
-  EXPECT_EQ(tables[0].notes[1],
-            "last, whatever their effect, because shares of correlated errors are not known: delta_4");
+  EXPECT_EQ(tables[0].notes[1], "together: delta_4; correlated errors have no shares of their own");
   EXPECT_EQ(tables[0].notes[2], "linear_deformation: 97.5 % of its scatter is linear in the errors");
   EXPECT_EQ(
       tables[0].notes[3],
@@ -297,6 +301,52 @@ TEST(MonteCarloTable, StatesTheMeanThatIsInNoShare) {
             "linear_deformation: not in these shares is its mean over the machines, 0.025 mm as a root mean square "
             "over the poses: 42 % of the whole mean square. Background and means of all errors make it together, with "
             "their signs; tighter tolerances leave it as it is");
+}
+
+/// The share of correlated errors together is what is linear in the errors, less the shares of the others.
+TEST(MonteCarloTable, RanksCorrelatedErrorsTogether) {
+  StoredResult result = example_of_machines();
+  YieldResult& yield = *monte_carlo_in(result).machines->yield;
+  yield.mean_square_share = {{2, 5}, {0.125, 0.25, 0.0625, kNaN, kNaN, 0.5, 0.0, 0.25, kNaN, kNaN}};
+  yield.linear_share = {{2}, {0.9375, 1.0}};
+  const Table table = monte_carlo_tables(result)[0];
+  std::vector<std::string> shown;
+  for (const std::vector<Cell>& row : table.rows) shown.push_back(row[0].text + " " + row[1].text + " " + row[4].text);
+  EXPECT_EQ(shown, (std::vector<std::string>{"2 correlated errors together 50 25", "epsilon_1 25 0", "delta_1 12.5 50",
+                                             "delta_2 6.25 25", "delta_3 - -", "delta_4 - -"}));
+  EXPECT_EQ(table.notes[1], "together: delta_3, delta_4; correlated errors have no shares of their own");
+}
+
+/// What is advised at the top of the report of the example.
+std::string advice_of(const StoredResult& result) {
+  const Answer lines = monte_carlo::kReport.answer(result);
+  return std::ranges::find(lines, "What to do", &Answer::value_type::first)->second;
+}
+
+TEST(MonteCarloAdvice, NamesCorrelatedErrorsWhereTheyMakeMost) {
+  StoredResult result = example_of_machines();
+  YieldResult& yield = *monte_carlo_in(result).machines->yield;
+  yield.mean_square_share = {{2, 5}, {0.125, 0.25, 0.0625, kNaN, kNaN, 0.5, 0.0, 0.25, kNaN, kNaN}};
+  yield.linear_share = {{2}, {0.9375, 1.0}};
+  EXPECT_NE(advice_of(result).find("Make smaller first what adds most to the scatter of linear_deformation: the "
+                                   "correlated errors delta_3, delta_4 together (50 %), epsilon_1 (25 %), delta_1 "
+                                   "(12.5 %)."),
+            std::string::npos)
+      << advice_of(result);
+}
+
+TEST(MonteCarloAdvice, IsToRemoveAMeanThatAddsMoreThanAnyError) {
+  StoredResult result = example_of_machines();
+  YieldResult& yield = *monte_carlo_in(result).machines->yield;
+  yield.offset = {{2}, {25e-6, 0.5}};
+  yield.offset_share = {{2}, {0.4, 0.0}};  // of the rest, 0.6, the largest error makes 70 %
+  EXPECT_EQ(advice_of(result).find("Remove first"), std::string::npos) << advice_of(result);
+  yield.offset_share = {{2}, {0.45, 0.0}};
+  EXPECT_NE(advice_of(result).find("Remove first the mean of linear_deformation over the machines, 0.025 mm as a root "
+                                   "mean square: it makes 45 % of the mean square"),
+            std::string::npos)
+      << advice_of(result);
+  EXPECT_NE(advice_of(result).find("Make smaller then what adds most"), std::string::npos) << advice_of(result);
 }
 
 TEST(MonteCarloTable, PutsWhatIsNotCertainIntoOneLine) {
