@@ -17,6 +17,7 @@
 #include "engine/base/error.h"
 #include "engine/base/text.h"
 #include "engine/kinds/evaluate/cases.h"
+#include "engine/kinds/evaluate/kind.h"
 #include "engine/kinds/study_file.h"
 #include "engine/report/frames_table.h"
 #include "engine/report/table.h"
@@ -175,6 +176,7 @@ int solve(const EvaluateOptions& options, const Evaluated& all, const std::strin
     evaluate::write_evaluation(path, study, poses, errors.factors, found, run_facts(seconds, threads, total.total()));
   }
   shown.found = std::move(found);
+  warn_each(options.study, evaluate::kReport.far_limits(shown));
   print(fmt::format("{} solves, {}\n\n{}", total.total(), unsolved_in_short(total),
                     text_of(evaluate::evaluation_table(shown), output_width())));
   if (path.empty()) {

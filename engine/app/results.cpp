@@ -19,11 +19,11 @@
 #include "engine/base/text.h"
 #include "engine/base/units.h"
 #include "engine/kinds/confirming_study.h"
+#include "engine/kinds/registry.h"
 #include "engine/kinds/result_file.h"
 #include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
 #include "engine/report/display.h"
-#include "engine/report/far_limits.h"
 #include "engine/report/solves.h"
 #include "engine/report/table.h"
 #include "engine/report/tables.h"
@@ -109,10 +109,16 @@ ExitCode judge_failures(const Study& study, const PoseSet& poses, const SolveCou
   return kTooManyNotConverged;
 }
 
-/// Judges a yield, and returns the exit code. certificate: true if the study found the tolerances itself, and the yield
-/// is that of fresh machines that certify them.
-ExitCode judge_yield(const YieldVerdict& yield, bool certificate, const std::string& study_path,
-                     const std::string& remedy) {
+/// What tells more about a yield that is undecided.
+std::string more_machines(const Study& study) {
+  if (study.errors.machines) return "give more machines, as rows of errors.machines";
+  return "take more samples, whose number may grow with --resume if the checkpoint is kept";
+}
+
+/// Judges a yield, and returns the exit code. more: see more_machines(). certificate: true if the study found the
+/// tolerances itself, and the yield is that of fresh machines that certify them.
+ExitCode judge_yield(const YieldVerdict& yield, const std::string& more, bool certificate,
+                     const std::string& study_path, const std::string& remedy) {
   using enum YieldVerdict::Decision;
   const std::string found =
       fmt::format("the yield is {} ({} to {} at {})", percent_text(yield.value), percent_text(yield.ci_low),
@@ -124,9 +130,8 @@ ExitCode judge_yield(const YieldVerdict& yield, bool certificate, const std::str
     return kLimitNotKept;
   }
   if (yield.decision == undecided) {
-    say(Message::warning, fmt::format("{}: {}, which does not tell whether it is {}; take more samples, whose number "
-                                      "may grow with --resume if the checkpoint is kept",
-                                      study_path, found, percent_text(yield.asked)));
+    say(Message::warning, fmt::format("{}: {}, which does not tell whether it is {}; {}", study_path, found,
+                                      percent_text(yield.asked), more));
   }
   if (yield.decision == kept && yield.with_parts && !(yield.with_parts->low >= yield.asked)) {
     say(Message::warning,
@@ -147,14 +152,10 @@ ExitCode judge_limits(const Study& study, const StoredResult& result, const std:
   print("\n" + text_of(*table, output_width()));
   const LimitVerdicts& verdicts = *result.verdicts;
   if (verdicts.yield) {
-    const auto value = [&](std::size_t limit) { return std::abs(verdicts.limits[limit].value); };
-    for (const std::string& note : far_limit_notes(result, value, "value at the wanted yield")) {
-      say(Message::warning, fmt::format("{}: {}", study_path, note));
-    }
     // If a kind of study can be asked for a yield (StudyKind::ask_yield), the yield is that of the study's machines.
     // For any other kind, a yield in the result is a certificate.
     const bool certificate = study.analysis.kind != nullptr && study.analysis.kind->ask_yield == nullptr;
-    return judge_yield(*verdicts.yield, certificate, study_path, remedy);
+    return judge_yield(*verdicts.yield, more_machines(study), certificate, study_path, remedy);
   }
   for (const LimitVerdict& one : verdicts.limits) {
     if (one.passed) continue;
@@ -219,6 +220,10 @@ std::vector<std::string> inputs_of(const std::string& study_path, const Study& s
   }
   if (study.mechanism.file) add(study.mechanism.file->name);
   return inputs;
+}
+
+void warn_each(const std::string& study_path, std::span<const std::string> notes) {
+  for (const std::string& note : notes) say(Message::warning, fmt::format("{}: {}", study_path, note));
 }
 
 ExitCode judge(const Study& study, const SolveCounts& solves, const StoredResult& result, const std::string& study_path,
@@ -299,10 +304,28 @@ void check_files_beside(const std::string& result, std::span<const std::string> 
   }
 }
 
+namespace {
+
+/// Notes on limits far from what is judged (ReportKind::far_limits).
+std::vector<std::string> far_limits_of(const Job& job, StudyResult& result) {
+  const auto notes = kind_of(job.study).report.far_limits;
+  if (notes == nullptr) return {};
+  StoredResult seen = described(job.study, job.model, job.poses);
+  seen.verdicts = result.verdicts;
+  seen.found = std::move(result.found);  // lent: a copy of a large result takes memory
+  std::vector<std::string> list = notes(seen);
+  result.found = std::move(seen.found);
+  return list;
+}
+
+}  // namespace
+
 std::optional<RunOutcome> run_to_file(const Job& job) {
   std::optional<StudyResult> result = run_study(job.study, job.model, job.poses.poses, job.options);
   if (!job.checkpoints().complete()) return std::nullopt;
   const bool writes = job.options.team == nullptr || job.options.team->leads();
+  std::vector<std::string> far_limits;
+  if (writes && result) far_limits = far_limits_of(job, *result);
   if (writes && result) {
     write_result(job.path, job.study, job.poses, std::move(result->found), outcome_of(job).facts,
                  result->drawing ? &*result->drawing : nullptr);
@@ -311,6 +334,7 @@ std::optional<RunOutcome> run_to_file(const Job& job) {
   if (result) {
     outcome.verdicts = result->verdicts;
     outcome.row_names = result->row_names;
+    outcome.far_limits = std::move(far_limits);
     if (writes && result->confirming) outcome.confirming = write_beside(job, *result->confirming);
   }
   if (const auto& shard = job.options.shard; shard && writes) {
@@ -332,7 +356,9 @@ int report_outcome(const Job& job, const std::string& study_path, const RunOutco
   StoredResult result = described(job.study, job.model, job.poses);
   result.verdicts = outcome.verdicts;
   result.row_names = outcome.row_names;
-  return judge(job.study, outcome.solves, result, study_path, {remedy, remedy});
+  const ExitCode code = judge(job.study, outcome.solves, result, study_path, {remedy, remedy});
+  warn_each(study_path, outcome.far_limits);
+  return code;
 }
 
 std::string memory_text(std::size_t bytes) {

@@ -59,7 +59,8 @@ struct RunOutcome {
   SolveCounts solves;
   RunFacts facts;
   std::optional<LimitVerdicts> verdicts = std::nullopt;
-  std::vector<std::string> row_names = {};  ///< names of the rows of errors in `verdicts`
+  std::vector<std::string> row_names = {};   ///< names of the rows of errors in `verdicts`
+  std::vector<std::string> far_limits = {};  ///< notes on limits far from what is judged (ReportKind::far_limits)
   /// Path of the study that was written beside the result (check_files_beside()); empty: none.
   std::string confirming = {};
 };
@@ -81,6 +82,9 @@ struct Remedies {
   std::string limits;    ///< what to do if a limit is not met
   std::string failures;  ///< what to do if too many samples failed
 };
+
+/// Says each note as a warning on the study.
+void warn_each(const std::string& study_path, std::span<const std::string> notes);
 
 /// Judges a result, and returns the exit code of the command. Prints PASS or FAIL for each limit. Messages on stderr
 /// name the limits that are not met, with the values found, and say if more samples failed than the study allows. In

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 
 #include "engine/report/display.h"
 
@@ -20,26 +22,35 @@ double size_of(const ValueLimit& limit) {
   return std::isinf(from) ? to : std::isinf(to) ? from : std::max(from, to);
 }
 
+/// Whether all of what is judged is good, or none of it; nothing where some is good or nothing was judged.
+std::optional<bool> all_or_none(std::uint64_t good, std::uint64_t judged) {
+  if (judged == 0 || (good > 0 && good < judged)) return std::nullopt;
+  return good == judged;
+}
+
 }  // namespace
+
+bool is_far(double times) { return times > kFar && times < kLargestRatio; }
 
 std::vector<std::string> far_limit_notes(const StoredResult& result,
                                          const std::function<double(std::size_t limit)>& typical,
                                          std::string_view name) {
-  if (!result.verdicts || !result.verdicts->yield) return {};
-  const YieldVerdict& yield = *result.verdicts->yield;
-  const bool all_good = yield.rejects == 0;
-  if (yield.machines == 0 || (!all_good && yield.rejects < yield.machines)) return {};
+  if (!result.verdicts) return {};
+  const std::optional<YieldVerdict>& yield = result.verdicts->yield;
   std::vector<std::string> notes;
   for (std::size_t k = 0; k < result.verdicts->limits.size(); ++k) {
     const LimitVerdict& one = result.verdicts->limits[k];
+    const std::optional<bool> all_good =
+        yield ? all_or_none(yield->machines - yield->rejects, yield->machines) : all_or_none(one.within, one.tried);
+    if (!all_good || one.limit.is_spread()) continue;
     const double limit = size_of(one.limit);
-    const double ratio = all_good ? limit / typical(k) : typical(k) / limit;
-    if (one.limit.is_spread() || !(ratio > kFar && ratio < kLargestRatio)) continue;
+    const double ratio = *all_good ? limit / typical(k) : typical(k) / limit;
+    if (!is_far(ratio)) continue;
     const std::string& response = result.responses[one.response].name;
     const std::string times = number_text(ratio, 2);
-    notes.push_back((all_good ? fmt::format("The limit of {} is {} times its {}", response, times, name)
-                              : fmt::format("The {} of {} is {} times its limit", name, response, times)) +
-                    ": look at the units of limits and sigmas");
+    notes.push_back((*all_good ? fmt::format("The limit of {} is {} times its {}", response, times, name)
+                               : fmt::format("The {} of {} is {} times its limit", name, response, times)) +
+                    std::string(kLookAtUnits));
   }
   return notes;
 }

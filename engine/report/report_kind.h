@@ -56,6 +56,8 @@ struct ReportKind {
   MethodWords (*method)(const StoredResult&) = nullptr;  ///< the method, for a paper; null: the kind adds nothing
   /// Adds the kind's own warnings; null: it has none.
   void (*warn)(const StoredResult&, std::vector<std::string>& list) = nullptr;
+  /// Notes on limits far from what is judged (report/far_limits.h); null: the kind judges no limits.
+  std::vector<std::string> (*far_limits)(const StoredResult&) = nullptr;
   /// The summary at the top of a report. The report appends a sentence on how the solves ended to the line "How sure".
   Answer (*answer)(const StoredResult&);
   ShownCells (*shown_cells)(const StoredResult&);  ///< the responses and poses that figures by pose show

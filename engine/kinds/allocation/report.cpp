@@ -14,6 +14,7 @@
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/allocation/summary.h"
 #include "engine/report/display.h"
+#include "engine/report/far_limits.h"
 
 namespace poesy::allocation {
 namespace {
@@ -161,6 +162,20 @@ void warn(const StoredResult& result, std::vector<std::string>& list) {
   std::string text = certificate_text(found);
   text.front() = 'N';
   list.push_back(text + ".");
+}
+
+/// Notes on limits of which tolerances use little although no machine is rejected.
+std::vector<std::string> notes_on_far_limits(const StoredResult& result) {
+  const Result& found = allocation_of(result);
+  std::vector<std::string> notes;
+  if (found.certificate.machines == 0 || found.certificate.rejects > 0 || found.poses() == 0) return notes;
+  for (std::size_t r = 0; r < result.responses.size(); ++r) {
+    const double times = 1.0 / std::ranges::max(found.limit_use.row(r));
+    if (std::isnan(found.limit(r)) || !is_far(times)) continue;
+    notes.push_back(fmt::format("The limit of {} is {} times what these tolerances use of it{}",
+                                result.responses[r].name, number_text(times, 2), kLookAtUnits));
+  }
+  return notes;
 }
 
 /// Names the parts with the largest shares of the cost, or of the mean square.
@@ -329,6 +344,7 @@ constinit const ReportKind kReport{.tally = tally,
                                    .words = words,
                                    .method = method,
                                    .warn = warn,
+                                   .far_limits = notes_on_far_limits,
                                    .answer = answer,
                                    .shown_cells = cells,
                                    .page = add_page,

@@ -14,6 +14,7 @@
 #include "engine/kinds/evaluate/cases.h"
 #include "engine/kinds/evaluate/kind.h"
 #include "engine/report/display.h"
+#include "engine/report/far_limits.h"
 #include "engine/report/tables.h"
 #include "engine/run/evaluation.h"
 
@@ -95,7 +96,7 @@ std::string fail_note(const Evaluation& found) {
                                                       : "lines ",
                                  fmt::join(std::span(failed).first(named), ", "));
   if (named < failed.size()) list += fmt::format(" and {} more", failed.size() - named);
-  return is_named ? list : list + " of the table of errors; a column 'part' names its rows";
+  return is_named ? list : list + " of the table of errors; a column 'part' whose cells all differ names its rows";
 }
 
 Table parts_table(const StoredResult& result) {
@@ -411,6 +412,11 @@ std::vector<Table> evaluation_tables(const StoredResult& result, const TableOpti
   return tables;
 }
 
+std::vector<std::string> notes_on_far_limits(const StoredResult& result) {
+  const auto judged = [&](std::size_t k) { return std::abs(result.verdicts->limits[k].value); };
+  return far_limit_notes(result, judged, "judged value");
+}
+
 }  // namespace
 
 Table evaluation_table(const StoredResult& result) {
@@ -438,6 +444,7 @@ constinit const ReportKind kReport{.tally = tally,
                                    .merits = merits,
                                    .words = words,
                                    .method = method,
+                                   .far_limits = notes_on_far_limits,
                                    .answer = answer,
                                    .shown_cells = cells,
                                    .page = add_page,

@@ -115,6 +115,9 @@ std::vector<std::string> warnings(const ReportKind& kind, const ReportedResult& 
   warn_of_unsolved(stored, tally, list);
   warn_of_unsolved_poses(tally, list);
   warn_of_calibration(stored, list);
+  if (kind.far_limits != nullptr) {
+    for (const std::string& note : kind.far_limits(stored)) list.push_back(note + ".");
+  }
   if (kind.warn != nullptr) kind.warn(stored, list);
   warn_of_poses(stored, list);
   warn_of_fidelity(stored, tally, list);
