@@ -144,6 +144,15 @@ PartEffects part_effects(const Mechanism& mechanism) {
   return effects;
 }
 
+/// The largest norm of an effect that counts as none, for an error of length 1.
+double largest_rounding(const Mechanism& mechanism, const PartEffects& effects) {
+  double largest = 0.0;
+  for (const std::vector<Matrix>& limb : effects) {
+    for (const Matrix& part : limb) largest = std::max(largest, part.norm());
+  }
+  return mechanism.precision.rank_threshold * largest;
+}
+
 /// For each error, false if it is an error of a feature and no zone limits it; else true.
 std::vector<bool> stated_errors(const Mechanism& mechanism) {
   std::vector<bool> is_stated(mechanism.factors.size(), true);
@@ -157,17 +166,23 @@ std::vector<bool> stated_errors(const Mechanism& mechanism) {
   return is_stated;
 }
 
+/// What an error adds to the error of a part (limb, frame), with lengths in units of the reach; zero: nothing.
+lie::Screw<double> part_of_error(const Mechanism& mechanism, std::size_t error, std::size_t limb, std::size_t frame) {
+  lie::Screw<double> column = lie::Screw<double>::Zero();
+  for (const chain::ErrorTerm& term : mechanism.terms[error]) {
+    if (term.limb != limb || term.frame != frame) continue;
+    column[static_cast<Index>(term.component)] += term.scale / (term.component < 3 ? 1.0 : mechanism.reach);
+  }
+  return column;
+}
+
 /// The errors of a part for which stated_errors() is true, as columns of length 1 with lengths in units of the reach.
 Matrix stated_columns(const Mechanism& mechanism, const std::vector<bool>& is_stated, std::size_t limb,
                       std::size_t frame) {
   Matrix columns(6, 0);
   for (std::size_t f = 0; f < mechanism.terms.size(); ++f) {
     if (!is_stated[f]) continue;
-    lie::Screw<double> column = lie::Screw<double>::Zero();
-    for (const chain::ErrorTerm& term : mechanism.terms[f]) {
-      if (term.limb != limb || term.frame != frame) continue;
-      column[static_cast<Index>(term.component)] += term.scale / (term.component < 3 ? 1.0 : mechanism.reach);
-    }
+    const lie::Screw<double> column = part_of_error(mechanism, f, limb, frame);
     if (!(column.norm() > 0.0)) continue;
     columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
     columns.rightCols<1>() = column.normalized();
@@ -285,17 +300,14 @@ std::string length_text(double metres) { return readable_text({metres, Dimension
 std::vector<std::string> uncovered_directions(const Mechanism& mechanism) {
   if (mechanism.features.empty()) return {};
   const PartEffects effects = part_effects(mechanism);
-  double largest = 0.0;
-  for (const std::vector<Matrix>& limb : effects) {
-    for (const Matrix& part : limb) largest = std::max(largest, part.norm());
-  }
+  const double nothing = largest_rounding(mechanism, effects);
   const std::vector<bool> is_stated = stated_errors(mechanism);
   std::vector<SaidByLimbs> said;
   for (std::size_t i = 0; i < effects.size(); ++i) {
     for (std::size_t k = 0; k < effects[i].size(); ++k) {
       const std::string part = part_words(mechanism, mechanism.limbs[i], k);
       if (part.empty()) continue;
-      const Matrix without_effect = null_space(effects[i][k], mechanism.precision.rank_threshold * largest);
+      const Matrix without_effect = null_space(effects[i][k], nothing);
       const Matrix stated = stated_columns(mechanism, is_stated, i, k);
       Matrix covered(6, without_effect.cols() + stated.cols());
       covered << without_effect, stated;
@@ -306,6 +318,36 @@ std::vector<std::string> uncovered_directions(const Mechanism& mechanism) {
   std::vector<std::string> list;
   for (const SaidByLimbs& one : said) list.push_back(limbs_words(mechanism, one.limbs) + ", " + one.words);
   return list;
+}
+
+namespace {
+
+/// Whether an error is the only one of all its parts and changes nothing to first order.
+bool is_alone_without_effect(const Mechanism& mechanism, const PartEffects& effects, double nothing,
+                             std::size_t error) {
+  return std::ranges::all_of(mechanism.terms[error], [&](const chain::ErrorTerm& term) {
+    const lie::Screw<double> column = part_of_error(mechanism, error, term.limb, term.frame);
+    if ((effects[term.limb][term.frame] * column).norm() > nothing * column.norm()) return false;
+    for (std::size_t f = 0; f < mechanism.terms.size(); ++f) {
+      if (f != error && part_of_error(mechanism, f, term.limb, term.frame).norm() > 0.0) return false;
+    }
+    return true;
+  });
+}
+
+}  // namespace
+
+std::vector<std::string> errors_without_effect(const Mechanism& mechanism) {
+  if (mechanism.first_named == mechanism.factors.size()) return {};
+  const PartEffects effects = part_effects(mechanism);
+  const double nothing = largest_rounding(mechanism, effects);
+  std::vector<std::string> names;
+  for (std::size_t f = mechanism.first_named; f < mechanism.factors.size(); ++f) {
+    if (is_alone_without_effect(mechanism, effects, nothing, f)) names.push_back(mechanism.factors[f].name);
+  }
+  if (names.empty()) return {};
+  return {fmt::format("{} {} no effect to first order, and {} no other error", listed(names),
+                      names.size() == 1 ? "has" : "have", names.size() == 1 ? "its part has" : "their parts have")};
 }
 
 namespace {

@@ -5,8 +5,8 @@
 
 #include "models/file/mechanism.h"
 
-/// Directions of errors that the tolerances of a drawing do not limit, and zones that limit nothing, as clauses for
-/// messages.
+/// Directions of errors that the tolerances of a drawing do not limit, errors without effect, and zones that limit
+/// nothing, as clauses for messages.
 namespace poesy::file {
 
 /// Finds, for each part, directions of its error twist that matter but that no error of the part covers. A direction
@@ -16,6 +16,11 @@ namespace poesy::file {
 /// clause such as "limbs 1 to 3, between q and B (frame 2): displacement along y has no tolerance", in the axes of the
 /// part's frame. Empty without features.
 std::vector<std::string> uncovered_directions(const Mechanism& mechanism);
+
+/// A clause about the errors with names of their own ([[error]]) that are the only error of their parts and have no
+/// effect to first order, at home and at 20 poses of the workspace: their direction may be a mistake. None if every
+/// such error has an effect.
+std::vector<std::string> errors_without_effect(const Mechanism& mechanism);
 
 /// Clauses about doubtful zones: a location or an orientation without datums, and an orientation zone so wide that it
 /// has no effect beside the feature's location zone (drawing::widest_orientation()). There are also clauses about a

@@ -407,6 +407,7 @@ void add_factors(const Numbers& numbers, Mechanism& mechanism) {
     add_listed(*file.frames, all, mechanism);
   }
   add_features(numbers, mechanism);
+  mechanism.first_named = mechanism.factors.size();
   for (const ErrorLines& error : file.errors) {
     add_named(error, numbers, mechanism);
     if (error.slot.each) mechanism.each.push_back(each_limb(error, mechanism));

@@ -131,7 +131,8 @@ struct Mechanism {
   std::optional<Vector3> tool = {};          ///< tool point in the platform's frame (m)
   /// Points of the platform that define the metric, in its frame (m); not all on a line.
   std::vector<Vector3> points = {};
-  std::vector<Factor> factors = {};           ///< errors
+  std::vector<Factor> factors = {};  ///< errors
+  std::size_t first_named = 0;       ///< index of the first error with a table [[error]]; those follow all others
   std::vector<chain::ErrorTerms> terms = {};  ///< contributions of each error to components of frames' errors
   std::vector<FactorSet> sets = {};           ///< sets of errors, "all" first
   std::vector<EachLimb> each = {};            ///< for messages: tables [[error]] with limb = "each"

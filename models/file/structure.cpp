@@ -208,6 +208,38 @@ std::vector<std::string> loads_without_effect(const Mechanism& mechanism) {
   return {"the load has no effect, because no joint, link or limb has stiffness"};
 }
 
+std::vector<std::string> odd_tool(const Mechanism& mechanism) {
+  constexpr double kNear = 0.3;  // share of the distance between the base's origin and the platform's
+  if (!mechanism.tool) return {};
+  const Vector3& tool = *mechanism.tool;
+  const Vector3& origin = mechanism.platform.p;
+  const auto mm = [](const Vector3& point) { return triple_text(kMillimetres * point) + " mm"; };
+  if (tool.norm() > mechanism.reach) {
+    return {fmt::format("the tool is {} from the platform's origin, and the mechanism's reach is {}",
+                        readable_text({tool.norm(), Dimension::length}),
+                        readable_text({mechanism.reach, Dimension::length}, 4))};
+  }
+  if (origin.norm() > kNear * mechanism.reach && (tool - origin).norm() < kNear * origin.norm()) {
+    return {
+        fmt::format("the tool is at {} from the platform's origin, which is itself at {} in the base's frame (the "
+                    "tool is stated in the platform's frame, not in the base's)",
+                    mm(tool), mm(origin))};
+  }
+  return {};
+}
+
+std::vector<std::string> wide_turns(const Mechanism& mechanism) {
+  constexpr double kFullTurn = 2.0 * std::numbers::pi * (1.0 + 1e-9);  // up to rounding
+  std::vector<std::string> list;
+  for (const Coordinate& coordinate : mechanism.coordinates) {
+    if (coordinate.dimension() != Dimension::angle || coordinate.upper - coordinate.lower <= kFullTurn) continue;
+    const auto text = [&](double value) { return readable_text({value, Dimension::angle}, 4); };
+    list.push_back(fmt::format("the workspace has {} from {} to {}, more than a full turn", coordinate.name,
+                               text(coordinate.lower), text(coordinate.upper)));
+  }
+  return list;
+}
+
 /// Returns true if the points of two joints are one point, up to the rounding of numbers in files.
 static bool are_at_one_point(const Joint& a, const Joint& b, double reach) {
   constexpr double kRounding = 1e-6;  // share of the reach
@@ -315,11 +347,13 @@ std::string structure_text(const Mechanism& mechanism) {
       text += frame_line(fmt::format("{}_{}", i + 1, j + 1), joints[j].name, motion_text(joints[j]), joints[j].at_home);
     }
   }
+  const auto on_platform = [&](const Vector3& place) {
+    return mechanism.platform * Transform{lie::Matrix3<double>::Identity(), place};
+  };
   text += frame_line("platform", "P", "", mechanism.platform);
+  if (mechanism.tool) text += frame_line("tool", "tip", "", on_platform(*mechanism.tool));
   for (const NamedPlatformPoint& point : mechanism.named) {
-    const Vector3 place(point.place[0], point.place[1], point.place[2]);
-    text +=
-        frame_line("point", point.name, "", mechanism.platform * Transform{lie::Matrix3<double>::Identity(), place});
+    text += frame_line("point", point.name, "", on_platform({point.place[0], point.place[1], point.place[2]}));
   }
   for (std::size_t b = kPlatform + 1; b < mechanism.bodies.size(); ++b) {
     text += frame_line("body", mechanism.bodies[b].name, "", mechanism.bodies[b].home);

@@ -96,12 +96,15 @@ std::vector<std::string> TrackedModel::unusual_geometry() const {
   std::vector<std::string> list = home_outside(mechanism_);
   std::ranges::move(axes_along_legs(mechanism_), std::back_inserter(list));
   std::ranges::move(loads_without_effect(mechanism_), std::back_inserter(list));
+  std::ranges::move(odd_tool(mechanism_), std::back_inserter(list));
+  std::ranges::move(wide_turns(mechanism_), std::back_inserter(list));
   return list;
 }
 
 std::vector<std::string> TrackedModel::unusual_errors() const {
   std::vector<std::string> list;
-  for (const auto& find : {unlike_limbs, doubtful_zones, doubtful_clearances, uncovered_directions}) {
+  for (const auto& find :
+       {unlike_limbs, doubtful_zones, doubtful_clearances, uncovered_directions, errors_without_effect}) {
     for (std::string& found : find(mechanism_)) list.push_back(std::move(found));
   }
   return list;

@@ -57,6 +57,23 @@ TEST(DrawingGaps, GrowByWhatAFeatureSaid) {
   EXPECT_EQ(uncovered_directions(read(without("hinge_b"))), more);
 }
 
+/// A leg's length error that is stated across the leg changes no length to first order.
+TEST(DrawingGaps, AnErrorWithoutEffectIsAskedAboutWhereItIsAlone) {
+  const std::string legs = replaced(text_of("ups6"), {"frames = \"all\"", ""});
+  const auto found = [&](const std::string& errors) { return errors_without_effect(read(legs + errors)); };
+  const auto error = [](const std::string& name, const std::string& limb, const std::string& component) {
+    return "\n[[error]]\nname = \"" + name + "\"\nlimb = " + limb + "\nframe = \"L\"\ncomponent = \"" + component +
+           "\"\n";
+  };
+  EXPECT_EQ(errors_without_effect(from_file("ups6")), Clauses{});  // all errors of frames, none with a name
+  EXPECT_EQ(found(error("leg", "[1, 2]", "delta_z")), Clauses{});
+  EXPECT_EQ(found(error("leg", "2", "delta_x")),
+            Clauses{"leg has no effect to first order, and its part has no other error"});
+  EXPECT_EQ(found(error("leg", "[1, 2]", "delta_x")),
+            Clauses{"leg_1 and leg_2 have no effect to first order, and their parts have no other error"});
+  EXPECT_EQ(found(error("leg", "2", "delta_x") + error("along", "2", "delta_z")), Clauses{});
+}
+
 TEST(DrawingGaps, ASizeFarFromTheLengthOfItsPartIsDoubtful) {
   const auto doubts = [](const std::string& size) {
     return doubtful_zones(read(replaced(

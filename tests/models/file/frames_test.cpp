@@ -38,6 +38,36 @@ TEST(Loads, AreAskedAboutWithoutStiffness) {
   EXPECT_TRUE(found("tripteron-msa", "force = [0, 0, \"-50 N\"]\n").empty());
 }
 
+TEST(Tools, FarFromThePlatformOrStatedInTheBaseAreAskedAbout) {
+  const auto found = [](const std::string& tool) {
+    const std::string text = replaced(text_of("ups6"), {"tool        = [0, 0, \"80 mm\"]", "tool = " + tool});
+    const MechanismFile file = read_mechanism_file(text, "m.toml");
+    return odd_tool(mechanism(file, default_geometry(file)));
+  };
+  EXPECT_TRUE(found("[0, 0, \"80 mm\"]").empty());
+  EXPECT_TRUE(found("[0, 0, \"-300 mm\"]").empty());
+  const std::vector<std::string> far = found("[0, 0, \"80 m\"]");
+  ASSERT_EQ(far.size(), 1u);
+  EXPECT_EQ(far.front().find("the tool is 80000 mm from the platform's origin"), 0u) << far.front();
+  const std::vector<std::string> in_base = found("[0, 0, \"h + 80 mm\"]");
+  ASSERT_EQ(in_base.size(), 1u);
+  EXPECT_EQ(in_base.front().find("the tool is at (0, 0, 880) mm from the platform's origin, which is itself at (0, 0, "
+                                 "800) mm in the base's frame"),
+            0u)
+      << in_base.front();
+}
+
+TEST(Turns, OfMoreThanAFullTurnAreAskedAbout) {
+  const auto found = [](const std::string& range) {
+    const std::string text = replaced(text_of("ups6"), {"rz = [\"-8 deg\", \"8 deg\"]", "rz = [" + range + "]"});
+    const MechanismFile file = read_mechanism_file(text, "m.toml");
+    return wide_turns(mechanism(file, default_geometry(file)));
+  };
+  EXPECT_TRUE(found("\"-180 deg\", \"180 deg\"").empty());
+  EXPECT_EQ(found("\"-8 rad\", \"8 rad\""),
+            std::vector<std::string>{"the workspace has rz from -458.4 deg to 458.4 deg, more than a full turn"});
+}
+
 /// An axis of a universal joint that lies along its leg is asked about, at either end of the leg.
 TEST(Frames, OfUniversalJointsLieAcrossTheLeg) {
   const auto found = [](const std::string& written, const std::string& instead) {
