@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <limits>
 #include <vector>
 
 #include "engine/model/calibrated.h"
@@ -145,11 +146,30 @@ std::string draws_of_machines(const StoredResult& result) {
                      counted(anew.size(), "error that is", "errors that are"), some_names(anew, kMostNamed));
 }
 
+/// The range of each coordinate over the poses: "x -80 mm to 80 mm, rz -10 deg to 10 deg". A coordinate that does not
+/// vary has one value.
+std::string ranges_text(const StoredResult& result) {
+  std::string text;
+  for (std::size_t c = 0; c < result.pose_coordinates.size(); ++c) {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (std::size_t m = 0; m < result.poses.size(); ++m) {
+      low = std::min(low, result.poses[PoseIndex(m)][c]);
+      high = std::max(high, result.poses[PoseIndex(m)][c]);
+    }
+    const Dimension dimension = dimension_of(result.pose_coordinates[c].unit);
+    text +=
+        fmt::format("{}{} {}", c == 0 ? "" : ", ", result.pose_coordinates[c].name, readable_text({low, dimension}, 4));
+    if (high > low) text += " to " + readable_text({high, dimension}, 4);
+  }
+  return text;
+}
+
 std::string poses_sentence(const StoredResult& result, const StudyWords& words) {
   const std::string choice = words.own_poses ? setting(result, "poses", "select") : std::string();
   std::string text = (words.fitted ? "What the calibration leaves was predicted at " : "The mechanism was solved at ") +
                      counted(result.poses.size(), "pose", "poses");
-  if (!choice.empty()) text += fmt::format(" (selected: {})", choice);
+  if (!choice.empty()) text += fmt::format(" (selected: {}; {})", choice, ranges_text(result));
   const std::string samples = setting(result, "analysis", "samples");
   const bool machines = setting(result, "analysis", "draws") == "per machine";
   if (words.draws && !words.samples.empty()) {

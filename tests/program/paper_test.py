@@ -259,7 +259,7 @@ class Paper(ProgramTest):
         words = " ".join(text.split())
         result = json.loads(self.succeeds("show", "study.h5", "--json"))
         for said in ("kind monte-carlo of the mechanism 2upr-rpu", f"poesy {result['poesy_version']} ({result['git_commit']})",
-                     "41 geometric errors were drawn (linear: ", "0.02 mm", "0.01 deg", "solved at 3 poses (selected: interior)",
+                     "41 geometric errors were drawn (linear: ", "0.02 mm", "0.01 deg", "solved at 3 poses (selected: interior; z -270 mm to -210 mm, ",
                      "for 1500 machines", "platform", "All 4 500 solves converged", "gap (0.04 mm)", "The yield is ",
                      "the seed 1", "begins with " + result["content_sha256"][:12], "@misc{poesy,"):
             self.assertIn(said, words)
