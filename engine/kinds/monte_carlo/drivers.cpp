@@ -118,6 +118,7 @@ ToldErrors told_errors(const StoredResult& result, const YieldResult& yield, con
   return found;
 }
 
+/// The shares of errors in the scatter of the limited response with index r.
 ResponseShares shares_of(const YieldResult& yield, std::size_t r) {
   ResponseShares shares{r, yield.mean_square_share.row(r), {}, yield.linear_share(r)};
   for (std::size_t p = 0; p < shares.each.size(); ++p) {
