@@ -10,6 +10,7 @@
 #include "engine/model/feature.h"
 #include "engine/model/feature_errors.h"
 #include "engine/report/display.h"
+#include "engine/report/drawn_errors.h"
 #include "engine/report/signs.h"
 #include "engine/stats/moments.h"
 
@@ -115,6 +116,10 @@ std::optional<Table> drawing_table(const StoredResult& result, std::size_t respo
                             in_unit(largest(found.worst_case.row(response)))),
                 "zones in mm; other errors are not in these numbers"},
       .ranked = true};
+  if (has_correlated(result)) {
+    table.notes.emplace_back(
+        "errors count as independent in these numbers, although the study correlates some of them");
+  }
   std::vector<std::size_t> rows = positions(found.features());
   if (std::ranges::any_of(rows, [&](std::size_t q) { return measured_errors(result, q) > 0; })) {
     table.notes.emplace_back(
