@@ -7,8 +7,10 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -423,11 +425,38 @@ std::string drivers_text(const StoredResult& result, std::size_t r) {
   return text;
 }
 
-/// The share of each feature, which is the sum over its errors, and of each error that belongs to no feature.
-std::map<std::string, double> shares_of_sources(const StoredResult& result, std::span<const double> shares) {
-  const std::vector<std::string> sources = feature_of_each_error(result);
+/// The name without the number of a limb at its end: "seat" of "seat_3". Any other name as it is.
+std::string_view stem_of(std::string_view name) {
+  const std::size_t end = name.find_last_not_of("0123456789");
+  const bool is_numbered = end != std::string_view::npos && end > 0 && end + 1 < name.size() && name[end] == '_';
+  return is_numbered ? name.substr(0, end) : name;
+}
+
+/// Gives sources whose names differ only in the number of a limb one name: "seat_*" for "seat_1" and "seat_2".
+void join_limbs(std::vector<std::string>& sources) {
+  std::map<std::string, std::set<std::string>> names_of_stem;
+  for (const std::string& source : sources) names_of_stem[std::string(stem_of(source))].insert(source);
+  for (std::string& source : sources) {
+    std::string stem(stem_of(source));
+    if (names_of_stem[stem].size() > 1) source = std::move(stem) + "_*";
+  }
+}
+
+/// The share of each feature, which is the sum over its errors, and of each error that belongs to no feature. If some
+/// errors are correlated, sources are joined over the limbs, so that those of all limbs are compared with the
+/// correlated errors of all limbs.
+std::map<std::string, double> shares_of_sources(const StoredResult& result, const ResponseShares& shares) {
+  const std::vector<std::string> all = feature_of_each_error(result);
+  std::vector<std::string> sources;
+  std::vector<double> values;
+  for (std::size_t p = 0; p < all.size(); ++p) {
+    if (std::isnan(shares.each[p])) continue;
+    sources.push_back(all[p]);
+    values.push_back(shares.each[p]);
+  }
+  if (!shares.correlated.empty()) join_limbs(sources);
   std::map<std::string, double> sums;
-  for (std::size_t p = 0; p < sources.size(); ++p) sums[sources[p]] += shares[p];
+  for (std::size_t k = 0; k < sources.size(); ++k) sums[sources[k]] += values[k];
   return sums;
 }
 
@@ -456,7 +485,7 @@ std::string limit_drivers_text(const StoredResult& result) {
   const auto shares = response_shares(result);
   if (!shares) return {};
   std::vector<std::pair<std::string, double>> order;
-  for (const auto& [name, share] : shares_of_sources(result, shares->each)) {
+  for (const auto& [name, share] : shares_of_sources(result, *shares)) {
     if (share > 0.0) order.emplace_back(name, share);
   }
   if (shares->together > 0.0) order.emplace_back(correlated_text(result, *shares), shares->together);
