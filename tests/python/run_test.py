@@ -33,6 +33,12 @@ class Runs(FolderTest):
     def test_seed(self):
         self.assertEqual(poesy.run(STUDIES["sensitivity"], seed=7).study["run"]["seed"], 7)
 
+    def test_machines_are_in_the_current_folder(self):
+        Path("parts.csv").write_text("delta_1_4_x [mm]\n" + "".join(f"{n / 100}\n" for n in range(-6, 7)))
+        asked = study({"kind": "monte-carlo", "draws": "per machine", "samples": 13, "limits": {"gap": "0.2 mm"}})
+        asked["errors"] = {**asked["errors"], "machines": "parts.csv"}
+        self.assertEqual(poesy.run(asked).study["errors"]["machines"]["columns"], ["delta_1_4_x"])
+
     def test_files_are_relative_to_the_current_folder(self):
         Path("robots").mkdir()
         Path("robots/rps3.toml").write_text(RPS3)

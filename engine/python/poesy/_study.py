@@ -11,12 +11,13 @@ from . import _toml
 from ._mechanism import Mechanism
 
 STUDY_NAME = "study.toml"
+FILE_KEYS = ("file", "machines")  # keys whose text names a file
 
 
 def write_study(study: Mapping[str, Any], folder: Path) -> tuple[Path, str]:
     """Writes the file STUDY_NAME into the folder. Returns its path and its text.
 
-    The dict names files relative to the current folder, by keys ``file``, but a study file names them relative to its
+    The dict names files relative to the current folder, by FILE_KEYS, but a study file names them relative to its
     own folder. So these files are linked into the folder under the same names. Then the resolved study, which is part
     of the result and its hash, has no name of a temporary folder. ``format`` and ``version`` may be left out.
     """
@@ -31,7 +32,7 @@ def _linked(value: Any, folder: Path) -> Any:
     if isinstance(value, Mechanism):
         return value.table() if value.path is None else {"file": _link(value.path.name, value.path, folder)}
     if isinstance(value, Mapping):
-        return {key: _file(inner, folder) if key == "file" else _linked(inner, folder) for key, inner in value.items()}
+        return {key: _file(inner, folder) if key in FILE_KEYS else _linked(inner, folder) for key, inner in value.items()}
     if isinstance(value, (list, tuple)):
         return [_linked(inner, folder) for inner in value]
     return value
