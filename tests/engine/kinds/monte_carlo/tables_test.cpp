@@ -330,7 +330,7 @@ TEST(MonteCarloAdvice, NamesCorrelatedErrorsWhereTheyMakeMost) {
   yield.linear_share = {{2}, {0.9375, 1.0}};
   EXPECT_NE(advice_of(result).find("Make smaller first what adds most to the scatter of linear_deformation: the "
                                    "correlated errors delta_3, delta_4 together (50 %), epsilon_1 (25 %), delta_* "
-                                   "(18.75 %)."),
+                                   "(18.8 %)."),
             std::string::npos)
       << advice_of(result);
 }
