@@ -36,12 +36,10 @@ std::vector<std::string> far_limit_notes(const StoredResult& result,
                                          const std::function<double(std::size_t limit)>& typical,
                                          std::string_view name) {
   if (!result.verdicts) return {};
-  const std::optional<YieldVerdict>& yield = result.verdicts->yield;
   std::vector<std::string> notes;
   for (std::size_t k = 0; k < result.verdicts->limits.size(); ++k) {
     const LimitVerdict& one = result.verdicts->limits[k];
-    const std::optional<bool> all_good =
-        yield ? all_or_none(yield->machines - yield->rejects, yield->machines) : all_or_none(one.within, one.tried);
+    const std::optional<bool> all_good = all_or_none(one.within, one.tried);
     if (!all_good || one.limit.is_spread()) continue;
     const double limit = size_of(one.limit);
     const double ratio = *all_good ? limit / typical(k) : typical(k) / limit;

@@ -17,10 +17,9 @@ bool is_far(double times);
 constexpr std::string_view kLookAtUnits = ": look at the units of limits and sigmas";
 
 /// Notes on limits that are more than 30 times larger or smaller than the typical magnitude of their response, if all
-/// machines or no machine is good, or, without a yield, if all or none of what is judged is within the limit. The
-/// likely cause is a limit or a sigma in a wrong unit. Limits on a spread are left
-/// out, and responses whose typical magnitude is not finite, or zero up to rounding. typical: typical magnitude for the
-/// limit with this index, SI. name: name of this magnitude, such as "root mean square".
+/// or none of the draws, machines or rows keep them. The likely cause is a limit or a sigma in a wrong unit. Limits on
+/// a spread are left out, and responses whose typical magnitude is not finite, or zero up to rounding. typical: typical
+/// magnitude for the limit with this index, SI. name: name of this magnitude, such as "root mean square".
 std::vector<std::string> far_limit_notes(const StoredResult& result,
                                          const std::function<double(std::size_t limit)>& typical,
                                          std::string_view name);

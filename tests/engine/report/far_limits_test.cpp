@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <cstdint>
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,18 +12,12 @@ namespace {
 
 constexpr double kRms = 2e-5;
 
-/// The notes for one limit, where `within` of 100 draws are within it, or where `rejects` of 100 machines are rejects.
-std::vector<std::string> notes(double limit, std::uint64_t within, std::optional<std::uint64_t> rejects = {},
-                               double rms = kRms) {
+/// The notes for two limits: `within` of 100 draws keep the first one, and half of them the second one, which is near.
+std::vector<std::string> notes(double limit, std::uint64_t within, double rms = kRms) {
   StoredResult result;
-  result.responses = {{"tip", "m"}};
-  LimitVerdicts& verdicts = result.verdicts.emplace();
-  verdicts.limits = {{.response = 0, .limit = limit, .tried = 100, .within = within}};
-  if (rejects) {
-    verdicts.yield.emplace();
-    verdicts.yield->machines = 100;
-    verdicts.yield->rejects = *rejects;
-  }
+  result.responses = {{"tip", "m"}, {"turn", "rad"}};
+  result.verdicts.emplace().limits = {{.response = 0, .limit = limit, .tried = 100, .within = within},
+                                      {.response = 1, .limit = rms, .tried = 100, .within = 50}};
   return far_limit_notes(
       result, [&](std::size_t) { return rms; }, "root mean square");
 }
@@ -44,17 +37,10 @@ TEST(FarLimits, AreThoseThatNoneKeepsByFar) {
   EXPECT_EQ(notes(kRms / 31.0, 1), Notes{});
 }
 
-/// With a yield, machines count, and not the draws within one limit.
-TEST(FarLimits, AreJudgedByMachinesWhereThereIsAYield) {
-  EXPECT_EQ(notes(31.0 * kRms, 100, 0).size(), 1U);
-  EXPECT_EQ(notes(31.0 * kRms, 100, 1), Notes{});
-  EXPECT_EQ(notes(kRms / 31.0, 50, 100).size(), 1U);
-}
-
 TEST(FarLimits, AreNotSoughtAgainstNothing) {
-  EXPECT_EQ(notes(1e-3, 100, {}, 0.0), Notes{});
-  EXPECT_EQ(notes(1e-3, 100, {}, 1e-15), Notes{});  // zero up to rounding
-  EXPECT_EQ(notes(1e-3, 100, {}, std::numeric_limits<double>::quiet_NaN()), Notes{});
+  EXPECT_EQ(notes(1e-3, 100, 0.0), Notes{});
+  EXPECT_EQ(notes(1e-3, 100, 1e-15), Notes{});  // zero up to rounding
+  EXPECT_EQ(notes(1e-3, 100, std::numeric_limits<double>::quiet_NaN()), Notes{});
   EXPECT_EQ(far_limit_notes({}, nullptr, ""), Notes{});
 }
 
