@@ -37,7 +37,7 @@ struct RobotPose {
 struct RobotError {
   std::size_t at;      ///< index among the errors of the result
   std::size_t factor;  ///< index among the factors of the model
-  double share;        ///< share of the error (ErrorShares); NaN if errors have no shares
+  double share;        ///< share of the error (ErrorShares); NaN if it has none
 };
 
 bool finite(const Sketch& sketch) {
@@ -107,17 +107,19 @@ std::vector<RobotPose> poses_of(const StoredResult& result, const Model& model, 
   return std::move(choice.list);
 }
 
-/// The errors of the result that the model has. If shares are known, the error with the largest share comes first.
+/// The errors of the result that the model has. If shares are known, the error with the largest share comes first, and
+/// errors without a share come last.
 std::vector<RobotError> errors_of(const StoredResult& result, const Model& model, const ErrorShares& shares) {
   const bool known = !shares.what.empty() && shares.values.size() == result.factors.size();
   std::vector<RobotError> list;
   for (std::size_t p = 0; p < result.factors.size(); ++p) {
     const std::optional<FactorIndex> factor = model.description().find_factor(result.factors[p].name);
     if (!factor) continue;
-    const double share = known ? std::max(0.0, std::isnan(shares.values[p]) ? 0.0 : shares.values[p]) : kNaN;
-    list.push_back({p, factor->value, share});
+    const bool has_own = known && !std::isnan(shares.values[p]);
+    list.push_back({p, factor->value, has_own ? std::max(0.0, shares.values[p]) : kNaN});
   }
-  if (known) std::ranges::stable_sort(list, std::ranges::greater(), &RobotError::share);
+  const auto rank = [](const RobotError& one) { return std::isnan(one.share) ? -1.0 : one.share; };
+  if (known) std::ranges::stable_sort(list, std::ranges::greater(), rank);
   return list;
 }
 
@@ -132,7 +134,7 @@ PartShares part_shares(const Sketch& sketch, const std::vector<RobotError>& erro
     const SketchedError& error = sketch.errors[one.factor];
     const bool inside = error.after == error.before;
     double& sum = inside ? parts.joints[error.limb][error.after - 1] : parts.links[error.limb][error.after];
-    sum += one.share;
+    if (!std::isnan(one.share)) sum += one.share;
     parts.largest = std::max(parts.largest, sum);
   }
   return parts;
@@ -367,6 +369,7 @@ std::string caption(const StoredResult& result, const Sketch& home, const std::v
   }
   if (!has_shares(errors)) return text;
   text += fmt::format(" Links and joints are coloured by the sum over their errors of the {}.", shares.what);
+  if (std::isnan(errors.back().share)) text += " Errors without a share of their own have no colour.";
   if (!shares.joined.empty()) {
     text += fmt::format(" That of a {0} is divided evenly among its errors, because the {0} is ranked as a whole.",
                         shares.joined);
