@@ -101,8 +101,10 @@ def figure(
 def _fit_texts(drawn: Figure) -> None:
     """Breaks labels that are longer than the figure, and puts the legend above the axes, where it hides nothing."""
     width, height = (_INCH * inches for inches in drawn.get_size_inches())
+    drawn.draw_without_rendering()  # so that the axes have their widths
     for axes in drawn.axes:
-        axes.set_xlabel(textwrap.fill(axes.get_xlabel(), int((width - _BESIDE) / _CHARACTER)).replace("\u00a0", " "))
+        room = min(width - _BESIDE, width - _INCH * axes.get_window_extent().x0 / drawn.dpi)  # beside long names of bars
+        axes.set_xlabel(textwrap.fill(axes.get_xlabel(), int(room / _CHARACTER)).replace("\u00a0", " "))
         axes.set_ylabel(textwrap.fill(axes.get_ylabel(), int((height - _BESIDE / 2) / _CHARACTER)))
     axes = drawn.axes[0]
     if axes.get_legend() is not None:
