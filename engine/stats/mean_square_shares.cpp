@@ -56,6 +56,7 @@ MeanSquareShares mean_square_shares(const LinearFit& fit, std::span<const std::s
   double linear = 0.0;
   double rest = 0.0;
   bool varies = false;
+  bool correlated = false;
   for (const std::size_t k : rows) rest += fit.rest[k];
   for (std::size_t p = 0; p < fit.errors; ++p) {
     const FactorSums sums = sums_of(fit, rows, p);
@@ -63,6 +64,7 @@ MeanSquareShares mean_square_shares(const LinearFit& fit, std::span<const std::s
     const double own = std::max(0.0, sums.square - sums.noise);
     linear += own;
     if (error.block != 0) {
+      correlated = true;
       for (std::size_t q = 0; q < p; ++q) {
         if (errors[q].block == error.block) linear += together(fit, rows, p, q);
       }
@@ -78,7 +80,8 @@ MeanSquareShares mean_square_shares(const LinearFit& fit, std::span<const std::s
   const double all = linear + rest;
   if (!varies || !(all > 0.0)) return none;
   for (Estimate& one : found.each) {
-    one = {one.value / all, {one.interval.low / all, std::min(one.interval.high / all, 1.0)}};
+    const Interval interval{one.interval.low / all, std::min(one.interval.high / all, 1.0)};
+    one = {one.value / all, correlated ? unknown.interval : interval};
   }
   found.linear = linear / all;
   const double means = squared_means(fit, rows);

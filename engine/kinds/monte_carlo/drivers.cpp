@@ -159,8 +159,10 @@ std::string offset_note(const StoredResult& result, const YieldResult& yield, st
 /// A note that names the errors whose shares are known only together; empty if there are none.
 std::string together_note(const StoredResult& result, const ResponseShares& shares) {
   if (shares.correlated.empty()) return {};
-  return fmt::format("together: {}; correlated errors have no shares of their own",
-                     some_names(names_of(result.factors, shares.correlated)));
+  return fmt::format(
+      "together: {}; correlated errors have no shares of their own, and no share has an interval beside "
+      "them",
+      some_names(names_of(result.factors, shares.correlated)));
 }
 
 /// Puts a line for the correlated errors together into a table of shares. columns: position of each response's share.
