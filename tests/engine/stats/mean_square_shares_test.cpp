@@ -57,6 +57,7 @@ TEST(MeanSquareShares, OfCorrelatedErrorsAreNotKnown) {
   // The mean square is 3 + 8 from the first two errors, 2 x 0.5 x (1 x 2) from their correlation, and 9 from the third
   // error.
   EXPECT_NEAR(shares.each[2].value, 9.0 / (11.0 + 2.0 + 9.0), 1e-9);
+  EXPECT_TRUE(std::isnan(shares.each[2].interval.low) && std::isnan(shares.each[2].interval.high));
 }
 
 TEST(MeanSquareShares, OfRoundingAreZeroOrNotKnown) {
