@@ -252,6 +252,24 @@ void add_pose(const std::vector<Feature>& features, const FeatureScatter& scatte
   sums.at_worst = std::move(largest.by_feature);
 }
 
+/// Whether the study correlates an error of a feature with others.
+bool correlates(const Study& study, const std::vector<Feature>& features) {
+  return std::ranges::any_of(study.errors.correlated, [&](const CorrelatedErrors& block) {
+    return std::ranges::any_of(features, [&](const Feature& feature) {
+      return std::ranges::any_of(feature.errors(), [&](FactorIndex error) {
+        return std::ranges::find(block.factors, error) != block.factors.end();
+      });
+    });
+  });
+}
+
+/// Makes unknown what assumes that all errors are independent: shares, and what all features do together.
+void forget_sums(DrawingResult& result) {
+  std::ranges::fill(result.share.all(), kNaN);
+  std::ranges::fill(result.rms.all(), kNaN);
+  std::ranges::fill(result.rms_worst_division.all(), kNaN);
+}
+
 void finish(const OverPoses& sums, std::size_t r, DrawingResult& result) {
   double all = 0.0;
   for (const double square : sums.squares) all += square;
@@ -291,6 +309,7 @@ std::optional<DrawingResult> drawing_result(const StudyRun& run) {
   for (std::size_t r = 0; r < model.responses.size(); ++r) {
     if (!signed_ones[r].empty()) finish(sums[r], r, result);
   }
+  if (correlates(study, features)) forget_sums(result);
   return result;
 }
 

@@ -10,7 +10,6 @@
 #include "engine/model/feature.h"
 #include "engine/model/feature_errors.h"
 #include "engine/report/display.h"
-#include "engine/report/drawn_errors.h"
 #include "engine/report/signs.h"
 #include "engine/stats/moments.h"
 
@@ -76,6 +75,17 @@ double largest(std::span<const double> values) {
   return most;
 }
 
+/// A note on the effects of features alone and together.
+std::string together_note(const DrawingResult& found, std::size_t response, const NamedUnit& named) {
+  const std::string alone = "effect: root mean square by the feature alone, over the poses; ";
+  const double all = root_mean_square(found.rms.row(response));
+  if (std::isnan(all)) return alone + "what they do together is not known here, because the study correlates errors";
+  return fmt::format(
+      "{}all of them together: {}, and {} where each location is divided between middle and tilt as is "
+      "worst",
+      alone, response_text(named, all), response_text(named, root_mean_square(found.rms_worst_division.row(response))));
+}
+
 }  // namespace
 
 bool has_zone_shape(const StoredResult& result) {
@@ -107,19 +117,12 @@ std::optional<Table> drawing_table(const StoredResult& result, std::size_t respo
       .name = "features",
       .caption = fmt::format("What the features of the drawing do to {} in their zones, to first order", named.name),
       .columns = {},
-      .notes = {fmt::format("effect: root mean square by the feature alone, over the poses; all of them together: "
-                            "{}, and {} where each location is divided between middle and tilt as is worst",
-                            in_unit(root_mean_square(found.rms.row(response))),
-                            in_unit(root_mean_square(found.rms_worst_division.row(response)))),
+      .notes = {together_note(found, response, named),
                 fmt::format("worst case, with all features in their zones, to first order: {}; of the worst case: "
                             "each feature's part of it at the pose where it is largest",
                             in_unit(largest(found.worst_case.row(response)))),
                 "zones in mm; other errors are not in these numbers"},
       .ranked = true};
-  if (has_correlated(result)) {
-    table.notes.emplace_back(
-        "errors count as independent in these numbers, although the study correlates some of them");
-  }
   std::vector<std::size_t> rows = positions(found.features());
   if (std::ranges::any_of(rows, [&](std::size_t q) { return measured_errors(result, q) > 0; })) {
     table.notes.emplace_back(

@@ -84,10 +84,6 @@ bool is_drawn_per_pose(const StoredResult& result, std::size_t error) {
   return !result.factor_draws.empty() && result.factor_draws[error] == name(Draws::per_pose);
 }
 
-bool has_correlated(const StoredResult& result) {
-  return result.study_text.find("\n[[errors.correlated]]\n") != std::string::npos;
-}
-
 std::string seed_text(const StoredResult& result, const StudyWords& words) {
   if (!words.draws) return {};
   return words.seed ? std::to_string(*words.seed) : readable_setting(result.study_text, "run", "seed");

@@ -22,9 +22,6 @@ std::string given_errors_text(const StoredResult& result);
 /// Returns true if a machine draws this error anew at each pose. error: index of the error in the result.
 bool is_drawn_per_pose(const StoredResult& result, std::size_t error);
 
-/// Whether the study correlates some errors.
-bool has_correlated(const StoredResult& result);
-
 /// The seed with which the errors of the result were drawn, as text; empty if no errors are drawn.
 std::string seed_text(const StoredResult& result, const StudyWords& words);
 

@@ -16,6 +16,9 @@ using Feature = Axis<"feature">;  ///< The features of a drawing, over all limbs
 /// The first-order effect of the features of a drawing on the responses, if the features scatter in their tolerance
 /// zones; SI. Features whose errors the study does not vary, and errors that belong to no feature, are left out. Values
 /// are NaN for a response that is neither signed nor the norm of signed responses, and if a pose is not solved.
+///
+/// `share`, `rms` and `rms_worst_division` are NaN if the study correlates errors of features, because they count the
+/// errors as independent.
 struct DrawingResult {
   /// A text for each feature.
   using Texts = Array<std::string, axis::Feature>;

@@ -84,6 +84,11 @@ Table rejects_table(const StoredResult& result) {
   return table;
 }
 
+/// Whether some errors are correlated and therefore have no index.
+bool has_correlated(const StoredResult& result) {
+  return result.study_text.find("\n[[errors.correlated]]\n") != std::string::npos;
+}
+
 /// Whether the response has too few samples that count in statistics (counts()) at a pose over which indices are
 /// summed.
 bool has_too_few_samples(const StoredResult& result, std::size_t r) {

@@ -2,16 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <limits>
 #include <string>
 
 namespace poesy {
 namespace {
 
-/// The result of a drawing with one feature, a rail in limb 1.
-StoredResult with_rail(const std::string& study) {
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// The result of a drawing with one feature, a rail in limb 1. together: what all features do together.
+StoredResult with_rail(double together) {
   StoredResult result;
-  result.study_text = study;
   result.factors = {{"rail_x_1", "m"}};
   result.responses = {{"tip_position", "m"}};
   DrawingResult& drawing = result.drawing.emplace();
@@ -24,20 +25,21 @@ StoredResult with_rail(const std::string& study) {
   drawing.location_datums = {{1}, "A"};
   drawing.orientation = drawing.orientation_datums = {{1}, "-"};
   drawing.orientation_zone = {{1}, 0.0};
-  drawing.effect = drawing.share = drawing.worst_share = {{1, 1}, 1e-5};
-  drawing.rms = drawing.rms_worst_division = drawing.worst_case = {{1, 2}, 1e-5};
+  drawing.effect = drawing.worst_share = {{1, 1}, 1e-5};
+  drawing.share = {{1, 1}, together};
+  drawing.rms = drawing.rms_worst_division = {{1, 2}, together};
+  drawing.worst_case = {{1, 2}, 1e-5};
   return result;
 }
 
-bool says_independent(const StoredResult& result) {
-  return std::ranges::any_of(drawing_table(result, 0)->notes, [](const std::string& note) {
-    return note.find("errors count as independent") != std::string::npos;
-  });
-}
-
-TEST(FeaturesOfADrawing, CountAsIndependentWhateverTheStudyCorrelates) {
-  EXPECT_FALSE(says_independent(with_rail("[errors]\nlinear = ...\n")));
-  EXPECT_TRUE(says_independent(with_rail("[errors]\n\n[[errors.correlated]]\nfactors = ...\n")));
+TEST(FeaturesOfADrawing, DoNothingKnownTogetherIfErrorsAreCorrelated) {
+  const Table known = drawing_table(with_rail(2e-5), 0).value();
+  EXPECT_NE(known.notes[0].find("all of them together: 0.02 mm"), std::string::npos) << known.notes[0];
+  const Table unknown = drawing_table(with_rail(kNaN), 0).value();
+  EXPECT_NE(unknown.notes[0].find("not known here, because the study correlates errors"), std::string::npos)
+      << unknown.notes[0];
+  EXPECT_EQ(unknown.rows[0][3].text, "0.01");
+  EXPECT_EQ(unknown.rows[0][4].text, "-");
 }
 
 }  // namespace
