@@ -176,7 +176,7 @@ class Limits(ProgramTest):
         self.assertAlmostEqual(row["within"], 100.0 / 3.0)
         self.assertTrue(row["place"].startswith("line 4 (sample 2), pose "))
         self.assertIn(b"1 of 3 rows are within the limit", done.stdout)
-        self.assertIn(b"fail: lines 3, 4 of the table of errors; a column 'part' names its rows", done.stdout)
+        self.assertIn(b"fail: lines 3, 4 of the table of errors; a column 'part' whose cells all differ names its rows", done.stdout)
 
     def test_errors_without_a_column_are_told(self):
         """They are zero, in what `evaluate` prints, in tables, in the report and in the method."""
