@@ -58,7 +58,7 @@ TEST(DrawingGaps, GrowByWhatAFeatureSaid) {
 }
 
 /// A leg's length error that is stated across the leg changes no length to first order.
-TEST(DrawingGaps, AnErrorWithoutEffectIsAskedAboutWhereItIsAlone) {
+TEST(DrawingGaps, AnErrorWithoutEffectIsAskedAbout) {
   const std::string legs = replaced(text_of("ups6"), {"frames = \"all\"", ""});
   const auto found = [&](const std::string& errors) { return errors_without_effect(read(legs + errors)); };
   const auto error = [](const std::string& name, const std::string& limb, const std::string& component) {

@@ -26,13 +26,13 @@ poesy::Study small_study(const poesy::CatalogEntry& entry) {
     study.poses.workspace.push_back({entry.description.pose_lower[c], entry.description.pose_upper[c]});
   }
   study.errors.by_factor.assign(entry.description.factors.size(), poesy::Distribution::normal(1e-4));
-  study.analysis.kind = &poesy::kSensitivityStudy;
+  study.analysis.kind = &poesy::sensitivity::kStudy;
   study.analysis.factors = entry.description.factor_sets.front().factors;
   study.analysis.samples = 10;
   return study;
 }
 
-bool some_index_is_positive(const poesy::SensitivityResult& result) {
+bool some_index_is_positive(const poesy::sensitivity::Result& result) {
   for (const double index : result.global) {
     if (std::isfinite(index) && index > 0.0) return true;
   }
@@ -47,7 +47,7 @@ bool run_file(const std::string& path, const std::string& result_path) {
   const auto result = poesy::run_study(study, *model, poses.poses);
   if (!result) return false;
   poesy::write_result(result_path, study, poses, result->found, {});
-  const auto& found = result->as<poesy::SensitivityResult>();
+  const auto& found = result->as<poesy::sensitivity::Result>();
   std::printf("%s: %zu errors at %zu poses\n", path.c_str(), found.factors(), found.poses());
   return some_index_is_positive(found);
 }
