@@ -144,9 +144,9 @@ TEST(CellStats, OfLaterSamplesAreMergedCellByCell) {
 }
 
 /// Parameter: number of samples, so that a cell has whole units only, one smaller unit only, or both.
-class SensitivityCells : public testing::TestWithParam<std::size_t> {};
+class Cells : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(SensitivityCells, HasTheUnitsOneByOne) {
+TEST_P(Cells, HasTheUnitsOneByOne) {
   const Solved solved(GetParam());
   Collector collect = solved.collected();
   for (std::size_t slot = 0; slot < 2; ++slot) {
@@ -159,7 +159,7 @@ TEST_P(SensitivityCells, HasTheUnitsOneByOne) {
   expect_units_one_by_one(std::move(collect).cells(), solved);
 }
 
-TEST_P(SensitivityCells, GoesOnFromAStateAfterAnyUnit) {
+TEST_P(Cells, GoesOnFromAStateAfterAnyUnit) {
   const Solved solved(GetParam());
   const Bytes end = state_of(solved.collected(), GetParam());
   Collector collect = solved.collector();
@@ -177,7 +177,7 @@ TEST_P(SensitivityCells, GoesOnFromAStateAfterAnyUnit) {
   }
 }
 
-TEST_P(SensitivityCells, TakesUpTheStatesOfAllShards) {
+TEST_P(Cells, TakesUpTheStatesOfAllShards) {
   const Solved solved(GetParam());
   Bytes states;
   for (const std::size_t shard : {2UL, 0UL, 1UL}) {
@@ -190,7 +190,7 @@ TEST_P(SensitivityCells, TakesUpTheStatesOfAllShards) {
   expect_units_one_by_one(std::move(whole).cells(), solved);
 }
 
-TEST_P(SensitivityCells, RefusesTheCellsOfAnotherShard) {
+TEST_P(Cells, RefusesTheCellsOfAnotherShard) {
   const Solved solved(GetParam());
   for (std::size_t of = 0; of < 3; ++of) {
     for (std::size_t by = 0; by < 3; ++by) {
@@ -200,15 +200,14 @@ TEST_P(SensitivityCells, RefusesTheCellsOfAnotherShard) {
   }
 }
 
-TEST_P(SensitivityCells, RefusesACellTwice) {
+TEST_P(Cells, RefusesACellTwice) {
   const Solved solved(GetParam());
   Bytes state = state_of(solved.collected({1, 3}), GetParam());
   state.insert(state.end(), state.begin(), state.end());
   EXPECT_EQ(refusal(solved.collector(), state, GetParam()), "has a cell twice");
 }
 
-INSTANTIATE_TEST_SUITE_P(Samples, SensitivityCells,
-                         testing::Values(2 * Plan::kUnitSamples, 300, 2 * Plan::kUnitSamples + 300),
+INSTANTIATE_TEST_SUITE_P(Samples, Cells, testing::Values(2 * Plan::kUnitSamples, 300, 2 * Plan::kUnitSamples + 300),
                          [](const auto& tested) { return "of_" + std::to_string(tested.param); });
 
 TEST(SensitivityCollector, OfMoreSamplesLeavesTheSmallerUnitOut) {
