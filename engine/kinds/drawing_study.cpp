@@ -263,8 +263,8 @@ bool correlates(const Study& study, const std::vector<Feature>& features) {
   });
 }
 
-/// Makes unknown what assumes that all errors are independent: shares, and what all features do together.
-void forget_sums(DrawingResult& result) {
+/// Sets to NaN what is correct only for independent errors: shares, and what all features do together.
+void remove_sums(DrawingResult& result) {
   std::ranges::fill(result.share.all(), kNaN);
   std::ranges::fill(result.rms.all(), kNaN);
   std::ranges::fill(result.rms_worst_division.all(), kNaN);
@@ -309,7 +309,7 @@ std::optional<DrawingResult> drawing_result(const StudyRun& run) {
   for (std::size_t r = 0; r < model.responses.size(); ++r) {
     if (!signed_ones[r].empty()) finish(sums[r], r, result);
   }
-  if (correlates(study, features)) forget_sums(result);
+  if (correlates(study, features)) remove_sums(result);
   return result;
 }
 

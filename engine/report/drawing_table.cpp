@@ -81,9 +81,8 @@ std::string together_note(const DrawingResult& found, std::size_t response, cons
   const double all = root_mean_square(found.rms.row(response));
   if (std::isnan(all)) return alone + "what they do together is not known here, because the study correlates errors";
   return fmt::format(
-      "{}all of them together: {}, and {} where each location is divided between middle and tilt as is "
-      "worst",
-      alone, response_text(named, all), response_text(named, root_mean_square(found.rms_worst_division.row(response))));
+      "{}all of them together: {}, and {} where each location is divided between middle and tilt as is worst", alone,
+      response_text(named, all), response_text(named, root_mean_square(found.rms_worst_division.row(response))));
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ MeanSquareShares mean_square_shares(const LinearFit& fit, std::span<const std::s
   double linear = 0.0;
   double rest = 0.0;
   bool varies = false;
-  bool correlated = false;
+  const bool correlated = std::ranges::any_of(errors, [](const ErrorEffect& error) { return error.block != 0; });
   for (const std::size_t k : rows) rest += fit.rest[k];
   for (std::size_t p = 0; p < fit.errors; ++p) {
     const FactorSums sums = sums_of(fit, rows, p);
@@ -64,7 +64,6 @@ MeanSquareShares mean_square_shares(const LinearFit& fit, std::span<const std::s
     const double own = std::max(0.0, sums.square - sums.noise);
     linear += own;
     if (error.block != 0) {
-      correlated = true;
       for (std::size_t q = 0; q < p; ++q) {
         if (errors[q].block == error.block) linear += together(fit, rows, p, q);
       }

@@ -36,10 +36,9 @@ struct ErrorEffect {
 /// all rows as fully correlated, because the same machines are used at all poses. The interval is computed with five
 /// times the least-squares variance of each slope. This factor is correct for residuals that are the square of a normal
 /// error z, because E[(z^2 - 1)^2 z^2] = 5 E[(z^2 - 1)^2] E[z^2]. For residuals that do not depend on the error the
-/// interval is too wide. If some errors are correlated, there are no intervals, because the products of their values
-/// are those of the fit's machines, which are too few for a small interval. poses: the number of poses in the rows.
-/// errors: [errors]. All results are NaN if no error has an effect above its `rounding`. Precondition: 0 < conf_level
-/// < 1.
+/// interval is too wide. If some errors are correlated, intervals are NaN, because they would leave out the noise of
+/// the correlation, which is that of the fit's machines. poses: the number of poses in the rows. errors: [errors]. All
+/// results are NaN if no error has an effect above its `rounding`. Precondition: 0 < conf_level < 1.
 MeanSquareShares mean_square_shares(const LinearFit& fit, std::span<const std::size_t> rows, std::size_t poses,
                                     std::span<const ErrorEffect> errors, double conf_level);
 

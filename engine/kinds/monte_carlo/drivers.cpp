@@ -160,8 +160,8 @@ std::string offset_note(const StoredResult& result, const YieldResult& yield, st
 std::string together_note(const StoredResult& result, const ResponseShares& shares) {
   if (shares.correlated.empty()) return {};
   return fmt::format(
-      "together: {}; correlated errors have no shares of their own, and no share has an interval beside "
-      "them",
+      "together: {}; correlated errors have no shares of their own, and where some are correlated, shares have no "
+      "intervals",
       some_names(names_of(result.factors, shares.correlated)));
 }
 

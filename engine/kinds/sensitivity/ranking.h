@@ -37,7 +37,8 @@ GlobalIndices shown_indices(const StoredResult& result);
 /// The distance of the farther end of an index's interval from the index, divided by the index.
 double relative_reach(const GlobalIndices& indices, std::size_t response, std::size_t factor);
 
-using poesy::has_effect;  // the functions below are named like those for single numbers
+// For single numbers; functions below have the same names.
+using poesy::has_effect;
 using poesy::index_rounding;
 
 /// The magnitude below which a global or local index of this response and error is rounding.

@@ -271,9 +271,9 @@ TEST(MonteCarloTable, ShowsFirstWhatMakesTheLimitedResponse) {
   EXPECT_EQ(shown, (std::vector<std::string>{"epsilon_1 70", "delta_3 12.5", "delta_1 10", "delta_2 5",
                                              "1 correlated error together 0", "delta_4 -"}));
   EXPECT_EQ(tables[0].columns[4].name, "share_ratio");
-  EXPECT_EQ(
-      tables[0].notes[1],
-      "together: delta_4; correlated errors have no shares of their own, and no share has an interval beside them");
+  EXPECT_EQ(tables[0].notes[1],
+            "together: delta_4; correlated errors have no shares of their own, and where some are correlated, shares "
+            "have no intervals");
   EXPECT_EQ(tables[0].notes[2], "linear_deformation: 97.5 % of its scatter is linear in the errors");
   EXPECT_EQ(
       tables[0].notes[3],
@@ -317,8 +317,8 @@ TEST(MonteCarloTable, RanksCorrelatedErrorsTogether) {
   EXPECT_EQ(shown, (std::vector<std::string>{"2 correlated errors together 50 25", "epsilon_1 25 0", "delta_1 12.5 50",
                                              "delta_2 6.25 25", "delta_3 - -", "delta_4 - -"}));
   EXPECT_EQ(table.notes[1],
-            "together: delta_3, delta_4; correlated errors have no shares of their own, and no share has an interval "
-            "beside them");
+            "together: delta_3, delta_4; correlated errors have no shares of their own, and where some are correlated, "
+            "shares have no intervals");
 }
 
 /// What is advised at the top of the report of the example.
