@@ -115,6 +115,22 @@ std::string means_sentence(const StoredResult& result, const StudyWords& words) 
                         : fmt::format("Means that the study states: {}.", some_names(errors, kMostNamed));
 }
 
+/// The sentence on correlated errors: "Correlated errors, by their normal scores: [leg_1, leg_2] with [[1, 0.5], [0.5,
+/// 1]]."
+std::string correlated_sentence(const StoredResult& result, const StudyWords& words) {
+  if (!words.draws) return {};
+  std::vector<std::string> blocks;
+  if (std::string all = setting(result, "errors", "correlated"); !all.empty()) blocks.push_back(std::move(all));
+  for (const StudySetting& one : study_settings(result.study_text)) {
+    if (!one.section.starts_with("errors.correlated")) continue;
+    const std::string value = readable_setting(one.value);
+    if (one.key == "factors") blocks.push_back(value);
+    if (one.key == "correlation" && !blocks.empty()) blocks.back() += " with " + value;
+  }
+  return blocks.empty() ? std::string()
+                        : fmt::format("Correlated errors, by their normal scores: {}.", fmt::join(blocks, "; "));
+}
+
 /// The sentence on background errors: "Background, the same in all machines: 12 errors, linear = 0.1 mm, angular = 0.01
 /// deg."
 std::string background_sentence(const StoredResult& result, const StudyWords& words) {
@@ -260,10 +276,10 @@ std::string method_text(const ReportKind& kind, const StoredResult& result, cons
                                  result.model, result.poesy_version, result.git_commit);
   for (const std::string& sentence :
        {geometry_sentence(study), errors_sentence(result, words), zones_sentence(result, words),
-        means_sentence(result, words), measured_sentence(result), background_sentence(result, words),
-        poses_sentence(result, words), fidelity_sentence(result), method_of(kind, result).text,
-        calibration_sentence(result, words), metric_sentence(result), solves_sentence(kind.tally(result).total()),
-        limits_sentence(result), repeat_sentence(result, words)}) {
+        means_sentence(result, words), measured_sentence(result), correlated_sentence(result, words),
+        background_sentence(result, words), poses_sentence(result, words), fidelity_sentence(result),
+        method_of(kind, result).text, calibration_sentence(result, words), metric_sentence(result),
+        solves_sentence(kind.tally(result).total()), limits_sentence(result), repeat_sentence(result, words)}) {
     if (!sentence.empty()) text += " " + sentence;
   }
   return text;

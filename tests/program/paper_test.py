@@ -337,6 +337,18 @@ leg_2 = { distribution = "uniform", half_width = "0.03 mm" }
             self.assertIn(said, words)
         self.assertNotIn("linear: ", words)
 
+    def test_the_method_states_correlated_errors(self):
+        study = (GALLERY / "tricept" / "yield.toml").read_text().replace("samples = 5000", "samples = 200")
+        shutil.copyfile(GALLERY / "tricept" / "tricept.toml", self.folder / "tricept.toml")
+        self.write("study.toml", study + """
+[[errors.correlated]]
+factors = ["leg_1", "leg_2"]
+correlation = [[1, 0.5], [0.5, 1]]
+""")
+        self.poesy("run", "study.toml", "-o", "study.h5")
+        words = " ".join(self.succeeds("show", "study.h5", "--method").split())
+        self.assertIn("Correlated errors, by their normal scores: [leg_1, leg_2] with [[1, 0.5], [0.5, 1]].", words)
+
     def test_the_method_states_means_background_and_wanted_yield(self):
         study = (GALLERY / "tricept" / "yield.toml").read_text()
         shutil.copyfile(GALLERY / "tricept" / "tricept.toml", self.folder / "tricept.toml")

@@ -432,13 +432,16 @@ std::string_view stem_of(std::string_view name) {
   return is_numbered ? name.substr(0, end) : name;
 }
 
-/// Gives sources whose names differ only in the number of a limb one name: "seat_*" for "seat_1" and "seat_2".
-void join_limbs(std::vector<std::string>& sources) {
+/// Gives sources whose names differ only in the number of a limb one name: "seat_*" for "seat_1" and "seat_2"; "other
+/// seat_*" if some seats are not among these sources but in `apart`.
+void join_limbs(std::vector<std::string>& sources, const std::vector<std::string>& apart) {
   std::map<std::string, std::set<std::string>> names_of_stem;
   for (const std::string& source : sources) names_of_stem[std::string(stem_of(source))].insert(source);
+  std::set<std::string_view> stems_apart;
+  for (const std::string& source : apart) stems_apart.insert(stem_of(source));
   for (std::string& source : sources) {
-    std::string stem(stem_of(source));
-    if (names_of_stem[stem].size() > 1) source = std::move(stem) + "_*";
+    const std::string stem(stem_of(source));
+    if (names_of_stem[stem].size() > 1) source = (stems_apart.contains(stem) ? "other " : "") + stem + "_*";
   }
 }
 
@@ -454,7 +457,9 @@ std::map<std::string, double> shares_of_sources(const StoredResult& result, cons
     sources.push_back(all[p]);
     values.push_back(shares.each[p]);
   }
-  if (!shares.correlated.empty()) join_limbs(sources);
+  std::vector<std::string> correlated;
+  for (const std::size_t p : shares.correlated) correlated.push_back(all[p]);
+  if (!correlated.empty()) join_limbs(sources, correlated);
   std::map<std::string, double> sums;
   for (std::size_t k = 0; k < sources.size(); ++k) sums[sources[k]] += values[k];
   return sums;
@@ -466,11 +471,14 @@ std::string correlated_text(const StoredResult& result, const ResponseShares& sh
   return "the correlated errors " + some_names(names_of(result.factors, shares.correlated), kNamed) + " together";
 }
 
-/// Advice on the mean of the response over the machines, if it adds more to the mean square than any source of scatter;
-/// else empty.
+/// Advice on the mean of the response over the machines, if it adds a tenth of the mean square, or more than any source
+/// of scatter; else empty. A tenth counts, because a mean can be removed as a whole, but an error only made smaller.
 std::string offset_text(const StoredResult& result, std::size_t r, double largest_share) {
+  constexpr double kNotable = 0.1;
   const YieldResult& yield = *monte_carlo_of(result).machines->yield;
-  if (!yield.has_offset() || !(yield.offset_share(r) > (1.0 - yield.offset_share(r)) * largest_share)) return {};
+  if (!yield.has_offset()) return {};
+  const double largest_source = (1.0 - yield.offset_share(r)) * largest_share;  // of the mean square
+  if (!(yield.offset_share(r) > std::min(kNotable, largest_source))) return {};
   return fmt::format(
       "Remove first the mean of {} over the machines, {} as a root mean square: it makes {} of the mean square, and "
       "tighter tolerances leave it as it is (background and means of errors make it). ",
