@@ -6,11 +6,14 @@
 #include <cmath>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "engine/model/feature.h"
 #include "engine/model/feature_errors.h"
 #include "engine/report/display.h"
 #include "engine/report/signs.h"
+#include "engine/schema/settings.h"
 #include "engine/stats/moments.h"
 
 namespace poesy {
@@ -31,10 +34,21 @@ bool is_of_feature(const DrawingResult& drawing, std::size_t q, const std::strin
   });
 }
 
-/// The number of errors of a feature that are measured. q: position of the feature in the result.
-std::size_t measured_errors(const StoredResult& result, std::size_t q) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      result.measured.names, [&](const std::string& error) { return is_of_feature(*result.drawing, q, error); }));
+/// [features] What states the sizes of a feature's errors instead of its zones: "measured" if some of them are
+/// measured, "overridden" if [errors.override] sets some of them, else empty.
+std::vector<std::string_view> instead_of_zones(const StoredResult& result) {
+  std::vector<std::string> overridden;
+  for (StudySetting& one : study_settings(result.study_text)) {
+    if (one.section == "errors.override") overridden.push_back(std::move(one.key));
+  }
+  std::vector<std::string_view> list;
+  for (std::size_t q = 0; q < result.drawing->features(); ++q) {
+    const auto is_of_it = [&](const std::string& error) { return is_of_feature(*result.drawing, q, error); };
+    list.push_back(std::ranges::any_of(result.measured.names, is_of_it) ? "measured"
+                   : std::ranges::any_of(overridden, is_of_it)          ? "overridden"
+                                                                        : "");
+  }
+  return list;
 }
 
 /// Returns true if the zones of a feature lie between two planes, so that their size is a width and not a diameter.
@@ -53,11 +67,12 @@ bool is_between_planes(const StoredResult& result, std::size_t q) {
 }
 
 /// The cell of a zone. It has a tolerance frame (Cell::boxes), except for the tolerance of a distance, for a clearance,
-/// and if errors of the feature were measured. q: index of the feature in the result. size: m.
-Cell zone_cell(const StoredResult& result, std::size_t q, const std::string& key, double size,
+/// and if something else states the sizes of the errors. instead: what does (instead_of_zones()). q: index of the
+/// feature in the result. size: m.
+Cell zone_cell(const StoredResult& result, std::size_t q, std::string_view instead, const std::string& key, double size,
                const std::string& datums) {
-  if (key != "-" && measured_errors(result, q) > 0) {
-    return text_cell("measured, instead of " + zone_text(key, size, datums));
+  if (key != "-" && !instead.empty()) {
+    return text_cell(fmt::format("{}, instead of {}", instead, zone_text(key, size, datums)));
   }
   Cell cell = text_cell(zone_text(key, size, datums));
   const auto known = std::ranges::find(zone_traits(), key, &ZoneTraits::key);
@@ -123,21 +138,29 @@ std::optional<Table> drawing_table(const StoredResult& result, std::size_t respo
                 "zones in mm; other errors are not in these numbers"},
       .ranked = true};
   std::vector<std::size_t> rows = positions(found.features());
-  if (std::ranges::any_of(rows, [&](std::size_t q) { return measured_errors(result, q) > 0; })) {
+  const std::vector<std::string_view> instead = instead_of_zones(result);
+  const auto some = [&](std::string_view what) { return std::ranges::find(instead, what) != instead.end(); };
+  if (some("measured")) {
     table.notes.emplace_back(
         "measured: the effect is that of the standard deviation of the measured parts, without their mean; the worst "
         "case is that of the zone");
+  }
+  if (some("overridden")) {
+    table.notes.emplace_back(
+        "overridden: the study sets the sizes of some errors of the feature (errors.override), and the effect is that "
+        "of these; the worst case is that of the zone");
   }
   std::ranges::stable_sort(rows, std::ranges::greater(), [&](std::size_t q) { return found.effect(response, q); });
   fill(table, rows,
        {{text_column("feature", "feature"), [&](std::size_t q) { return text_cell(found.names[q]); }},
         {text_column("location", "location or size"),
          [&](std::size_t q) {
-           return zone_cell(result, q, found.location(q), found.location_zone(q), found.location_datums(q));
+           return zone_cell(result, q, instead[q], found.location(q), found.location_zone(q), found.location_datums(q));
          }},
         {text_column("orientation", "orientation"),
          [&](std::size_t q) {
-           return zone_cell(result, q, found.orientation(q), found.orientation_zone(q), found.orientation_datums(q));
+           return zone_cell(result, q, instead[q], found.orientation(q), found.orientation_zone(q),
+                            found.orientation_datums(q));
          }},
         {number_column("effect", "effect", unit.name),
          [&, response](std::size_t q) { return value_cell(found.effect(response, q), named); }},

@@ -425,6 +425,19 @@ bounds = ["0.002 mm", "0.2 mm"]
         self.assertEqual([name for name, text in shown.items() if "measured" in text], ["rod_2"])
         self.assertIn("the effect is that of the standard deviation of the measured parts", " ".join(table["notes"]))
 
+    def test_overridden_sizes(self):
+        """The table does not show the zone of a feature as if it were the size of errors that the study sets otherwise."""
+        self.result("zones", 'kind = "monte-carlo"\ndraws = "per machine"\nsamples = 100').close()
+        override = '[errors.override]\nrod_2 = { distribution = "uniform", half_width = "0.2 mm" }\n'
+        study = (self.folder / "zones.toml").read_text()
+        self.write("study.toml", study.replace("[analysis]", override + "[analysis]"))
+        self.succeeds("run", "study.toml", "-o", "study.h5", "--quiet")
+        table = next(one for one in json.loads(self.succeeds("show", "study.h5", "--json"))["tables"] if one["name"] == "features")
+        shown = {row["feature"]: row["location"] for row in table["rows"]}
+        self.assertEqual(shown["rod_2"], "overridden, instead of +-0.02")
+        self.assertEqual([name for name, text in shown.items() if "overridden" in text], ["rod_2"])
+        self.assertIn("overridden: the study sets the sizes of some errors of the feature", " ".join(table["notes"]))
+
     def test_rounded(self):
         """Tolerances in steps that a workshop has: the certificate is of these."""
         for name, round_to in (("r10", '"R10"'), ("steps", '"0.0005 mm"')):
