@@ -158,6 +158,17 @@ class WhatIf(ProgramTest):
         self.assertLess(rejects, self.rejected(found, [1] * len(sliders)).sum() - 30)
         self.assertLessEqual(abs(int(predicted) - rejects), 2)  # the prediction uses a linear map
 
+    def test_an_overridden_error_of_a_feature_has_a_slider_of_its_own(self):
+        self.write("delta.toml", (MECHANISMS / "linear-delta-drawing.toml").read_text())
+        overridden = '[errors.override]\nrod_2 = { distribution = "uniform", half_width = "0.2 mm" }\n[analysis]'
+        found = self.report(ZONES.replace('"uniform" }', '"normal", sigmas = 3 }').replace("[analysis]", overridden))
+        sliders = {slider["name"]: slider for slider in found["sliders"]}
+        self.assertEqual([(size["label"], size["value"], size["unit"]) for size in sliders["rod_2"]["sizes"]],
+                         [("\u00b1", 0.2, "mm")])
+        self.assertEqual(len(sliders["rod_2"]["errors"]), 1)
+        if "rod" in sliders:  # among the ten with the largest effects
+            self.assertEqual(len(sliders["rod"]["errors"]), 2)
+
     def test_limits_over_poses_have_no_prediction(self):
         self.assertIsNone(self.report(STUDY.replace("LIMITS", 'z = { spread = "0.3 mm" }')))
         self.assertIsNone(self.report(STUDY.replace("LIMITS", 'z = { to = "0.3 mm", from = "-0.3 mm", share = 0.9 }')))

@@ -37,8 +37,8 @@ std::vector<WhatIfSize> sizes_of(const Feature& feature) {
   return sizes;
 }
 
-/// Adds the errors of features that scatter in their tolerance zones to `list`. Features of the same name in several
-/// limbs are joined. Returns whether each error of the plan was added.
+/// Adds the errors of features that scatter in their tolerance zones to `list`, but not those whose sizes the study sets
+/// otherwise. Features of the same name in several limbs are joined. Returns whether each error of the plan was added.
 std::vector<bool> add_features(const Study& study, const Plan& plan, std::vector<SizedErrors>& list) {
   const std::vector<std::optional<Distribution>> by_zones = distributions_by_zones(study);
   std::vector<bool> taken(plan.factors().size(), false);
@@ -47,7 +47,8 @@ std::vector<bool> add_features(const Study& study, const Plan& plan, std::vector
     for (const FactorIndex error : feature.errors()) {
       const auto at = std::ranges::find(plan.factors(), error);
       const auto slot = static_cast<std::size_t>(at - plan.factors().begin());
-      if (at != plan.factors().end() && by_zones[error.value] && !plan.is_per_pose(slot)) slots.push_back(slot);
+      const bool is_own = at != plan.factors().end() && by_zones[error.value] == study.errors.by_factor[error.value];
+      if (is_own && !plan.is_per_pose(slot)) slots.push_back(slot);
     }
     std::vector<WhatIfSize> sizes = sizes_of(feature);
     if (slots.empty() || sizes.empty()) continue;
