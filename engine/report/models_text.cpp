@@ -87,8 +87,7 @@ std::string model_text(const CatalogEntry& entry) {
   text += "\npose coordinates and default workspace\n";
   for (std::size_t c = 0; c < model.pose_coordinates.size(); ++c) {
     const PoseCoordinate& coordinate = model.pose_coordinates[c];
-    const Unit& unit =
-        coordinate.dimension == Dimension::angle ? *find_unit("rad") : display_unit(coordinate.dimension);
+    const Unit& unit = display_unit(coordinate.dimension);
     text += fmt::format("  {:<16} {:>8.6g} to {:<8.6g} {:<4} {}\n", coordinate.name, model.pose_lower[c] / unit.si,
                         model.pose_upper[c] / unit.si, unit.name, coordinate.description);
   }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import html
 import itertools
+import math
 import os
 import re
 import shutil
@@ -22,6 +23,7 @@ _VECTOR = rf"\(({_NUMBER}), ({_NUMBER}), ({_NUMBER})\)"
 _FRAME = re.compile(rf"  (?P<name>\S+) +(?P<joint>\S+)(?: +(?P<type>\S.*?))? +{_VECTOR} +{_VECTOR} +{_VECTOR}")
 _COORDINATE = re.compile(rf"  (\S+) +({_NUMBER}) to ({_NUMBER}) +(\S+) (.*)")
 _NAMED = re.compile(r"  (\S+) +(N m|\S+) (.*)")  # a name, its unit (only "N m" has a blank), and a description
+_SI_OF_SHOWN = {"mm": (1e-3, "m"), "deg": (math.radians(1.0), "rad")}  # size in SI and SI unit of a unit in the text
 _RESPONSES = re.compile(
     r'responses(?: by \[solver\] metric = "(?P<metric>[^"]*)")?(?P<usual>, which a study without the key has)?'
 )
@@ -220,7 +222,7 @@ def _coordinates(lines: list[str]) -> tuple[Coordinate, ...]:
     found = []
     for match in filter(None, map(_COORDINATE.fullmatch, lines)):
         name, lower, upper, unit, description = match.groups()
-        scale, si_unit = (1e-3, "m") if unit == "mm" else (1.0, unit)
+        scale, si_unit = _SI_OF_SHOWN.get(unit, (1.0, unit))
         found.append(Coordinate(name, float(lower) * scale, float(upper) * scale, si_unit, description.strip()))
     return tuple(found)
 
