@@ -1,0 +1,164 @@
+#include "engine/kinds/monte_carlo/advice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "engine/kinds/monte_carlo/drivers.h"
+#include "engine/kinds/monte_carlo/result.h"
+#include "engine/report/display.h"
+#include "engine/report/drawing_table.h"
+#include "engine/report/tables.h"
+
+namespace poesy::monte_carlo {
+namespace {
+
+/// Advice such as "Make smaller first what makes most of the variance of gap alone: delta_1 (12 %), ...". Empty if the
+/// first-order indices of the errors are unknown or small, as they are for norms.
+std::string drivers_text(const StoredResult& result, std::size_t r) {
+  constexpr std::size_t kMost = 3;
+  constexpr double kLittle = 0.1;
+  const Result& found = monte_carlo_of(result);
+  const MainEffects& effects = found.effects.effects;
+  const auto share = [&](std::size_t p) { return effects.s1(r, p); };
+  std::vector<std::size_t> order;  // errors with an effect that differs significantly from zero
+  std::vector<std::string> unranked;
+  for (std::size_t p = 0; p < result.factors.size(); ++p) {
+    if (effects.s1_ci_low(r, p) > 0.0) order.push_back(p);
+    if (std::isnan(share(p))) unranked.push_back(result.factors[p].name);
+  }
+  std::ranges::stable_sort(order, std::ranges::greater(), share);
+  order.resize(std::min(kMost, order.size()));
+  std::string text;
+  double sum = 0.0;
+  for (const std::size_t p : order) {
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", result.factors[p].name, percent_text(share(p)));
+    sum += share(p);
+  }
+  if (!(sum >= kLittle)) return {};
+  text = fmt::format("Make smaller first what makes most of the variance of {} alone: {}.", result.responses[r].name,
+                     text);
+  if (!unranked.empty()) text += fmt::format(" Not ranked, because they are correlated: {}.", some_names(unranked));
+  return text;
+}
+
+/// The name without the number of a limb at its end: "seat" of "seat_3". Any other name as it is.
+std::string_view stem_of(std::string_view name) {
+  const std::size_t end = name.find_last_not_of("0123456789");
+  const bool is_numbered = end != std::string_view::npos && end > 0 && end + 1 < name.size() && name[end] == '_';
+  return is_numbered ? name.substr(0, end) : name;
+}
+
+/// Gives sources whose names differ only in the number of a limb one name: "seat_*" for "seat_1" and "seat_2"; "other
+/// seat_*" if some seats are not among these sources but in `apart`.
+void join_limbs(std::vector<std::string>& sources, const std::vector<std::string>& apart) {
+  std::map<std::string, std::set<std::string>> names_of_stem;
+  for (const std::string& source : sources) names_of_stem[std::string(stem_of(source))].insert(source);
+  std::set<std::string_view> stems_apart;
+  for (const std::string& source : apart) stems_apart.insert(stem_of(source));
+  for (std::string& source : sources) {
+    const std::string stem(stem_of(source));
+    if (names_of_stem[stem].size() > 1) source = (stems_apart.contains(stem) ? "other " : "") + stem + "_*";
+  }
+}
+
+/// The share of each feature, which is the sum over its errors, and of each error that belongs to no feature. If some
+/// errors are correlated, sources are joined over the limbs, so that those of all limbs are compared with the
+/// correlated errors of all limbs.
+std::map<std::string, double> shares_of_sources(const StoredResult& result, const ResponseShares& shares) {
+  const std::vector<std::string> all = feature_of_each_error(result);
+  std::vector<std::string> sources;
+  std::vector<double> values;
+  for (std::size_t p = 0; p < all.size(); ++p) {
+    if (std::isnan(shares.each[p])) continue;
+    sources.push_back(all[p]);
+    values.push_back(shares.each[p]);
+  }
+  std::vector<std::string> correlated;
+  for (const std::size_t p : shares.correlated) correlated.push_back(all[p]);
+  if (!correlated.empty()) join_limbs(sources, correlated);
+  std::map<std::string, double> sums;
+  for (std::size_t k = 0; k < sources.size(); ++k) sums[sources[k]] += values[k];
+  return sums;
+}
+
+/// The correlated errors as one source of scatter: "the correlated errors leg_1, leg_2 and 4 more together".
+std::string correlated_text(const StoredResult& result, const ResponseShares& shares) {
+  constexpr std::size_t kNamed = 2;
+  return "the correlated errors " + some_names(names_of(result.factors, shares.correlated), kNamed) + " together";
+}
+
+/// Advice on the mean of the response over the machines, if it adds a tenth of the mean square, or more than any source
+/// of scatter; else empty. A tenth counts, because a mean can be removed as a whole, but an error only made smaller.
+std::string offset_text(const StoredResult& result, std::size_t r, double largest_share) {
+  constexpr double kNotable = 0.1;
+  const YieldResult& yield = *monte_carlo_of(result).machines->yield;
+  if (!yield.has_offset()) return {};
+  const double largest_source = (1.0 - yield.offset_share(r)) * largest_share;  // of the mean square
+  if (!(yield.offset_share(r) > std::min(kNotable, largest_source))) return {};
+  return fmt::format(
+      "Remove first the mean of {} over the machines, {} as a root mean square: it makes {} of the mean square, and "
+      "tighter tolerances leave it as it is (background and means of errors make it). ",
+      result.responses[r].name, response_text(result.responses[r], yield.offset(r)),
+      percent_text(yield.offset_share(r)));
+}
+
+/// Advice such as "Make smaller first what adds most to the scatter of tip_z: flange (36 %), ...". It names features,
+/// errors that belong to no feature, and correlated errors together. Empty if their shares are not known.
+std::string limit_drivers_text(const StoredResult& result) {
+  constexpr std::size_t kMost = 3;
+  const auto shares = response_shares(result);
+  if (!shares) return {};
+  std::vector<std::pair<std::string, double>> order;
+  for (const auto& [name, share] : shares_of_sources(result, *shares)) {
+    if (share > 0.0) order.emplace_back(name, share);
+  }
+  if (shares->together > 0.0) order.emplace_back(correlated_text(result, *shares), shares->together);
+  std::ranges::stable_sort(order, std::ranges::greater(), &std::pair<std::string, double>::second);
+  order.resize(std::min(kMost, order.size()));
+  std::string text;
+  for (const auto& [name, share] : order) {
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", name, percent_text(share));
+  }
+  if (text.empty()) return {};
+  const std::string offset = offset_text(result, shares->response, order.front().second);
+  return fmt::format("{}Make smaller {} what adds most to the scatter of {}: {}.", offset,
+                     offset.empty() ? "first" : "then", result.responses[shares->response].name, text);
+}
+
+}  // namespace
+
+std::string advice(const StoredResult& result, std::size_t r) {
+  using Decision = YieldVerdict::Decision;
+  const std::optional<LimitVerdicts>& verdicts = result.verdicts;
+  const bool has_yield = verdicts && verdicts->yield;
+  const bool undecided = has_yield && verdicts->yield->decision == Decision::undecided;
+  const bool judged = verdicts && !undecided && !(has_yield && verdicts->yield->decision == Decision::not_asked);
+  if (judged && verdicts->passed() && has_yield) {
+    return "Nothing has to be done: as far as it shows, the limits are kept.";
+  }
+  if (judged && verdicts->passed()) {
+    const bool has_machines = monte_carlo_of(result).machines.has_value();
+    return fmt::format(
+        "As far as it shows, the limits are kept{}. If machines have to be within them, ask for a yield ({}).",
+        judged_text(*verdicts), has_machines ? "judge = \"yield\"" : "draws = \"per machine\"");
+  }
+  std::string drivers = limit_drivers_text(result);
+  if (drivers.empty()) drivers = drivers_text(result, r);
+  const std::string which = drivers.empty() ? "A sensitivity study says which errors to make smaller." : drivers;
+  const std::string_view first =
+      !verdicts   ? "State limits under [analysis.limits], and the report judges them. "
+      : judged    ? ""
+      : undecided ? "More machines (samples) decide whether the yield is high enough. "
+                  : "State the yield that you need (yield, under [analysis]), and the report judges it. ";
+  return std::string(first) + which;
+}
+
+}  // namespace poesy::monte_carlo

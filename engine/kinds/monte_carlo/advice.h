@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "engine/result/result_file.h"
+
+/// What the report of a Monte Carlo study advises to do next.
+namespace poesy::monte_carlo {
+
+/// Advice on which limits, machines or wanted yield the study needs, and which errors to make smaller. It names
+/// features, errors that belong to no feature, correlated errors together, and the mean of a response over the
+/// machines. r: position of the response for which errors are named if the shares of the errors in the scatter of a
+/// limited response are not known.
+std::string advice(const StoredResult& result, std::size_t r);
+
+}  // namespace poesy::monte_carlo
