@@ -8,7 +8,6 @@
 #include <optional>
 #include <set>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "engine/kinds/monte_carlo/drivers.h"
@@ -56,43 +55,64 @@ std::string_view stem_of(std::string_view name) {
   return is_numbered ? name.substr(0, end) : name;
 }
 
-/// Gives sources whose names differ only in the number of a limb one name: "seat_*" for "seat_1" and "seat_2"; "other
-/// seat_*" if some seats are not among these sources but in `apart`.
-void join_limbs(std::vector<std::string>& sources, const std::vector<std::string>& apart) {
+/// Gives sources whose names differ only in the number of a limb one name: "seat_*" for "seat_1" and "seat_2".
+void join_limbs(std::vector<std::string>& sources) {
   std::map<std::string, std::set<std::string>> names_of_stem;
   for (const std::string& source : sources) names_of_stem[std::string(stem_of(source))].insert(source);
-  std::set<std::string_view> stems_apart;
-  for (const std::string& source : apart) stems_apart.insert(stem_of(source));
   for (std::string& source : sources) {
     const std::string stem(stem_of(source));
-    if (names_of_stem[stem].size() > 1) source = (stems_apart.contains(stem) ? "other " : "") + stem + "_*";
+    if (names_of_stem[stem].size() > 1) source = stem + "_*";
   }
-}
-
-/// The share of each feature, which is the sum over its errors, and of each error that belongs to no feature. If some
-/// errors are correlated, sources are joined over the limbs, so that those of all limbs are compared with the
-/// correlated errors of all limbs.
-std::map<std::string, double> shares_of_sources(const StoredResult& result, const ResponseShares& shares) {
-  const std::vector<std::string> all = feature_of_each_error(result);
-  std::vector<std::string> sources;
-  std::vector<double> values;
-  for (std::size_t p = 0; p < all.size(); ++p) {
-    if (std::isnan(shares.each[p])) continue;
-    sources.push_back(all[p]);
-    values.push_back(shares.each[p]);
-  }
-  std::vector<std::string> correlated;
-  for (const std::size_t p : shares.correlated) correlated.push_back(all[p]);
-  if (!correlated.empty()) join_limbs(sources, correlated);
-  std::map<std::string, double> sums;
-  for (std::size_t k = 0; k < sources.size(); ++k) sums[sources[k]] += values[k];
-  return sums;
 }
 
 /// The correlated errors as one source of scatter: "the correlated errors leg_1, leg_2 and 4 more together".
 std::string correlated_text(const StoredResult& result, const ResponseShares& shares) {
   constexpr std::size_t kNamed = 2;
   return "the correlated errors " + some_names(names_of(result.factors, shares.correlated), kNamed) + " together";
+}
+
+/// A source of scatter, such as a feature, and its share.
+struct Source {
+  std::string name;
+  double share = 0.0;
+  std::string_view remark = {};  ///< follows the share in the text
+};
+
+/// The source to which all correlated errors belong; none if they belong to several. sources: [errors].
+std::optional<std::string> only_correlated_source(const std::vector<std::string>& sources,
+                                                  const ResponseShares& shares) {
+  if (shares.correlated.empty()) return std::nullopt;
+  const std::string& first = sources[shares.correlated.front()];
+  const bool is_only = std::ranges::all_of(shares.correlated, [&](std::size_t p) { return sources[p] == first; });
+  return is_only ? std::optional(first) : std::nullopt;
+}
+
+/// The share of each feature, which is the sum over its errors, and of each error that belongs to no feature. If some
+/// errors are correlated, sources are joined over the limbs, so that those of all limbs are compared with the
+/// correlated errors of all limbs. The share of correlated errors is known only together: it is added to that of their
+/// feature if they all belong to one that has other errors too; otherwise they are a source of their own.
+std::vector<Source> sources_of_scatter(const StoredResult& result, const ResponseShares& shares) {
+  std::vector<std::string> names = feature_of_each_error(result);
+  if (!shares.correlated.empty()) join_limbs(names);
+  std::map<std::string, double> sums;
+  for (std::size_t p = 0; p < names.size(); ++p) {
+    if (!std::isnan(shares.each[p])) sums[names[p]] += shares.each[p];
+  }
+  const std::optional<std::string> only = only_correlated_source(names, shares);
+  const bool belong_to_one = only && sums.contains(*only);
+  std::vector<Source> sources;
+  if (!belong_to_one && !shares.correlated.empty()) {
+    sources.push_back({correlated_text(result, shares), shares.together});
+    for (const std::size_t p : shares.correlated) {
+      if (auto rest = sums.extract(names[p])) sources.push_back({"the rest of " + names[p], rest.mapped()});
+    }
+  }
+  for (const auto& [name, share] : sums) {
+    const bool has_correlated = belong_to_one && name == *only;
+    sources.push_back(
+        {name, share + (has_correlated ? shares.together : 0.0), has_correlated ? ", correlated errors included" : ""});
+  }
+  return sources;
 }
 
 /// Advice on the mean of the response over the machines, if it adds a tenth of the mean square, or more than any source
@@ -116,19 +136,17 @@ std::string limit_drivers_text(const StoredResult& result) {
   constexpr std::size_t kMost = 3;
   const auto shares = response_shares(result);
   if (!shares) return {};
-  std::vector<std::pair<std::string, double>> order;
-  for (const auto& [name, share] : shares_of_sources(result, *shares)) {
-    if (share > 0.0) order.emplace_back(name, share);
-  }
-  if (shares->together > 0.0) order.emplace_back(correlated_text(result, *shares), shares->together);
-  std::ranges::stable_sort(order, std::ranges::greater(), &std::pair<std::string, double>::second);
+  std::vector<Source> order = sources_of_scatter(result, *shares);
+  std::erase_if(order, [](const Source& source) { return !(source.share > 0.0); });
+  std::ranges::stable_sort(order, std::ranges::greater(), &Source::share);
   order.resize(std::min(kMost, order.size()));
   std::string text;
-  for (const auto& [name, share] : order) {
-    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", name, percent_text(share));
+  for (const Source& source : order) {
+    text +=
+        fmt::format("{}{} ({}{})", text.empty() ? "" : ", ", source.name, percent_text(source.share), source.remark);
   }
   if (text.empty()) return {};
-  const std::string offset = offset_text(result, shares->response, order.front().second);
+  const std::string offset = offset_text(result, shares->response, order.front().share);
   return fmt::format("{}Make smaller {} what adds most to the scatter of {}: {}.", offset,
                      offset.empty() ? "first" : "then", result.responses[shares->response].name, text);
 }
