@@ -351,7 +351,7 @@ TEST(MonteCarloAdvice, NamesCorrelatedErrorsOfSeveralFeaturesApart) {
       << advice_of(result);
 }
 
-TEST(MonteCarloAdvice, NamesCorrelatedErrorsThatAreAWholeFeatureTogether) {
+TEST(MonteCarloAdvice, NamesTheErrorsOfACorrelatedFeature) {
   StoredResult result = example_of_machines();
   YieldResult& yield = *monte_carlo_in(result).machines->yield;
   yield.mean_square_share = {{2, 5}, {kNaN, 0.25, kNaN, kNaN, kNaN, kNaN, 0.25, kNaN, kNaN, kNaN}};
