@@ -15,10 +15,11 @@ function(poesy_internal_names out text)
     string(FIND "${text}" "\n}  // namespace\n" length)
     string(SUBSTRING "${text}" 0 ${length} space)
     string(SUBSTRING "${text}" ${length} -1 text)
-    string(REGEX REPLACE "\\[\\[[a-z_]+\\]\\] |\ntemplate <[^\n]*|\nnamespace {|\nusing [^\n]*" "" space "${space}")
+    string(REGEX REPLACE "\\[\\[[a-z_]+\\]\\] |\ntemplate <[^\n]*|( final)? : public [^\n{]*|\nnamespace {|\nusing [^\n]*" "" space "${space}")
     # In lines that are not indented, what stands before a parameter, a value or a body ends with the name.
     string(REGEX MATCHALL "\n(struct|class|enum class|enum) [A-Za-z_0-9]+" types "${space}")
     string(REGEX MATCHALL "\n[A-Za-z_][^][\n(){}=;]*" others "${space}")
+    list(FILTER others EXCLUDE REGEX "^\n[A-Z_]+$")  # macros of GoogleTest, whose names differ in a program anyway
     list(APPEND definitions ${types} ${others})
   endwhile()
   set(names)

@@ -59,3 +59,8 @@ endforeach()
 add_library(public_headers_alone OBJECT ${header_sources})
 target_link_libraries(public_headers_alone PRIVATE poesy_engine poesy_models poesy_options)
 target_compile_options(public_headers_alone PRIVATE -O0)
+# Where all is built at once, two libraries are read once for all of them: a header that needs them, or what they include,
+# and does not say so is found by a build without POESY_UNITY.
+if(POESY_UNITY)
+  target_precompile_headers(public_headers_alone PRIVATE <Eigen/Core> <toml++/toml.h>)
+endif()

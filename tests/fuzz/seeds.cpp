@@ -38,7 +38,7 @@ void write_sensitivity_seed(const std::string& path) {
   example.study.mechanism.compared = 1;
   sensitivity::Result result = example.sensitivity();
   const auto& described = *catalog()[0].description.separation;
-  const SeparationResult::Cells cells({2, test::Example::kPoses}, 0.25);
+  const sensitivity::SeparationResult::Cells cells({2, test::Example::kPoses}, 0.25);
   result.separation = {.measure = described.measure,
                        .drive = cells,
                        .constraint = cells,

@@ -112,6 +112,42 @@ class WhatIf(ProgramTest):
             sigma = 1e-4 if size["unit"] == "mm" else numpy.radians(0.05) / numpy.sqrt(3)
             self.assertAlmostEqual(spread / sigma, 1, delta=0.12)  # 5 standard errors of 800 machines
 
+    def changes(self):
+        """The yields in per cent that the summary predicts for single changes."""
+        text = (self.folder / "out.html").read_text()
+        said = re.search(r"Predicted yields for one change alone, now [\d.]+ %: (.*?)\.<", text)
+        return {name: float(value) for name, value in re.findall(r"([^,:]+?) ([\d.]+) %", said.group(1))}
+
+    def test_the_summary_predicts_what_a_slider_shows(self):
+        self.write("delta.toml", (MECHANISMS / "linear-delta-drawing.toml").read_text())
+        found = self.report(ZONES)
+        names = [slider["name"] for slider in found["sliders"]]
+        was = ~self.rejected(found, [1] * len(names))
+        said = self.changes()
+        self.assertGreaterEqual(len(said), 3)
+        self.assertEqual(list(said.values()), sorted(said.values(), reverse=True))
+        for change, value in said.items():
+            name = change.strip().removeprefix("halving ")
+            good = ~self.rejected(found, [0.5 if one == name else 1 for one in names])
+            both, before, after = ((numpy.sum(one) + 1) / (len(was) + 4)
+                                   for one in (was & good, was & ~good, ~was & good))
+            slope = (both - (both + before) * (both + after)) / ((both + before) * (1 - both - before))
+            expected = good.mean() + slope * (found["yield"][0] - was.mean())
+            self.assertAlmostEqual(value, 100 * expected, delta=0.11, msg=change)  # shown to a tenth; arrays are floats
+
+    def test_the_summary_names_errors_whose_means_reject_machines(self):
+        """Predicted without the mean: the yield of the run without it, with the same draws."""
+        study = STUDY.replace("LIMITS", LIMITS)
+        found = self.report(study)
+        name = next(one["name"] for one in found["sliders"] if one["sizes"][0]["unit"] == "mm")
+        shifted = f'[errors.override]\n{name} = {{ distribution = "normal", sigma = "0.1 mm", mean = "0.4 mm" }}\n[analysis]'
+        shifted = self.report(study.replace("[analysis]\n", shifted + "\n"))
+        self.assertLess(shifted["yield"][0], found["yield"][0] - 0.05)
+        stem = name.rstrip("0123456789")
+        said = [value for change, value in self.changes().items() if f"removing the means of {stem}" in change]
+        self.assertEqual(len(said), 1, self.changes())
+        self.assertAlmostEqual(said[0], 100 * found["yield"][0], delta=2)
+
     def test_costs_follow_the_laws_of_the_parts(self):
         found = self.report(ALLOCATION)
         with h5py.File(self.folder / "out.h5") as file:

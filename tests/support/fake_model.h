@@ -140,4 +140,6 @@ inline Catalog fake_catalog() {
            }}};
 }
 
+inline const Catalog kFakeCatalog = fake_catalog();
+
 }  // namespace poesy::test

@@ -93,8 +93,9 @@ WorkspaceMap residual_map(const StoredResult& result, ArrayPool& pool) {
 void add_residuals(const StoredResult& result, std::span<const Table> tables, Page& page) {
   Section& section = page.add_section("residuals", "Measured against fitted values");
   add_figure(page, section, "residuals", residual_map(result, page.figures.pool),
-             "Each dot is a place where the machine was measured, coloured by what is chosen, and numbered by its row "
-             "in the table of measurements; it is unknown where this was not measured. A distance is at the first of "
+             "Each dot is a place where the machine was measured, coloured by what is chosen. Point at a dot to see "
+             "its row in the table of measurements. A value is unknown where this was not measured. A distance is at "
+             "the first of "
              "its two places.");
   section.table(tables, "residuals");
 }

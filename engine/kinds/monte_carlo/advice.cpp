@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
 #include <string_view>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "engine/kinds/monte_carlo/result.h"
 #include "engine/report/display.h"
 #include "engine/report/drawing_table.h"
+#include "engine/report/limb_names.h"
 #include "engine/report/tables.h"
 
 namespace poesy::monte_carlo {
@@ -46,23 +46,6 @@ std::string drivers_text(const StoredResult& result, std::size_t r) {
                      text);
   if (!unranked.empty()) text += fmt::format(" Not ranked, because they are correlated: {}.", some_names(unranked));
   return text;
-}
-
-/// The name without the number of a limb at its end: "seat" of "seat_3". Any other name as it is.
-std::string_view stem_of(std::string_view name) {
-  const std::size_t end = name.find_last_not_of("0123456789");
-  const bool is_numbered = end != std::string_view::npos && end > 0 && end + 1 < name.size() && name[end] == '_';
-  return is_numbered ? name.substr(0, end) : name;
-}
-
-/// Gives sources whose names differ only in the number of a limb one name: "seat_*" for "seat_1" and "seat_2".
-void join_limbs(std::vector<std::string>& sources) {
-  std::map<std::string, std::set<std::string>> names_of_stem;
-  for (const std::string& source : sources) names_of_stem[std::string(stem_of(source))].insert(source);
-  for (std::string& source : sources) {
-    const std::string stem(stem_of(source));
-    if (names_of_stem[stem].size() > 1) source = stem + "_*";
-  }
 }
 
 /// The correlated errors as one source of scatter: "the correlated errors leg_1, leg_2 and 4 more together".
@@ -153,7 +136,7 @@ std::string limit_drivers_text(const StoredResult& result) {
 
 }  // namespace
 
-std::string advice(const StoredResult& result, std::size_t r) {
+std::string advice(const StoredResult& result, std::size_t r, const std::string& predicted) {
   using Decision = YieldVerdict::Decision;
   const std::optional<LimitVerdicts>& verdicts = result.verdicts;
   const bool has_yield = verdicts && verdicts->yield;
@@ -168,7 +151,7 @@ std::string advice(const StoredResult& result, std::size_t r) {
         "As far as it shows, the limits are kept{}. If machines have to be within them, ask for a yield ({}).",
         judged_text(*verdicts), has_machines ? "judge = \"yield\"" : "draws = \"per machine\"");
   }
-  std::string drivers = limit_drivers_text(result);
+  std::string drivers = predicted.empty() ? limit_drivers_text(result) : predicted;
   if (drivers.empty()) drivers = drivers_text(result, r);
   const std::string which = drivers.empty() ? "A sensitivity study says which errors to make smaller." : drivers;
   const std::string_view first =

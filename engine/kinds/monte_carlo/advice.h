@@ -11,7 +11,8 @@ namespace poesy::monte_carlo {
 /// Advice on which limits, machines or wanted yield the study needs, and which errors to make smaller. It names
 /// features, errors that belong to no feature, correlated errors together, and the mean of a response over the
 /// machines. r: position of the response for which errors are named if the shares of the errors in the scatter of a
-/// limited response are not known.
-std::string advice(const StoredResult& result, std::size_t r);
+/// limited response are not known. predicted: sentence on the yields that are predicted for single changes, which
+/// replaces the shares in the scatter; may be empty.
+std::string advice(const StoredResult& result, std::size_t r, const std::string& predicted = {});
 
 }  // namespace poesy::monte_carlo

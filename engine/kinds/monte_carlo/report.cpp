@@ -369,8 +369,10 @@ std::vector<double> pose_weights(const Result& found, const Study& study) {
   return weights;
 }
 
-/// Adds to the page the section that predicts the yield at other sizes of the errors. Adds nothing if there is no
-/// yield, or if machines are calibrated.
+constexpr std::string_view kWhatToDo = "What to do";
+
+/// Adds to the page the section that predicts the yield at other sizes of the errors, and tells in the summary which
+/// changes raise the yield most. Adds nothing if there is no yield, or if machines are calibrated.
 void add_solved_page(const ReportedResult& reported, Page& page) {
   const Result& found = monte_carlo_of(reported.stored);
   const Study& study = *reported.study;
@@ -380,17 +382,20 @@ void add_solved_page(const ReportedResult& reported, Page& page) {
   if (!fits || !found.machines || !found.machines->yield || study.analysis.calibration != nullptr) return;
   if (found.poses() == 0 || found.poses() != reported.stored.poses.size()) return;
   const YieldResult& yield = *found.machines->yield;
-  add_what_if({.study = study,
-               .model = *reported.model,
-               .poses = reported.stored.poses,
-               .errors = sized_errors(study, reported.stored.poses),
-               .pose_weights = pose_weights(found, study),
-               .machines = yield.machines,
-               .yield = yield.value,
-               .yield_low = yield.ci_low,
-               .yield_high = yield.ci_high,
-               .conf_level = yield.conf_level},
-              "yield", page);
+  const std::string changes = add_what_if({.study = study,
+                                           .model = *reported.model,
+                                           .poses = reported.stored.poses,
+                                           .errors = sized_errors(study, reported.stored.poses),
+                                           .pose_weights = pose_weights(found, study),
+                                           .machines = yield.machines,
+                                           .yield = yield.value,
+                                           .yield_low = yield.ci_low,
+                                           .yield_high = yield.ci_high,
+                                           .conf_level = yield.conf_level},
+                                          "yield", page);
+  const auto line = std::ranges::find(page.answer, kWhatToDo, &AnswerLine::first);
+  if (changes.empty() || line == page.answer.end()) return;
+  line->second = advice(reported.stored, response_named(reported.stored, default_ranking(reported.stored)), changes);
 }
 
 /// The summary at the top of the report: the expected values of a response, and its worst pose.
@@ -420,7 +425,7 @@ Answer answer(const StoredResult& result) {
                         counted(worst.alike.size(), "other pose", "other poses"));
   }
   lines.emplace_back("How sure", std::move(sure));
-  lines.emplace_back("What to do", advice(result, r));
+  lines.emplace_back(kWhatToDo, advice(result, r));
   return lines;
 }
 

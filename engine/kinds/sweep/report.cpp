@@ -330,6 +330,22 @@ bool narrows(const StoredResult& result, const Result& found, std::size_t q) {
          });
 }
 
+/// The keys whose smallest or largest number in the sweep the design has.
+std::vector<std::string> keys_at_an_end(const Result& found, std::size_t design) {
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < found.keys.size(); ++k) {
+    const double own = found.number(design, k);
+    double low = own;
+    double high = own;
+    for (std::size_t d = 0; d < found.designs(); ++d) {
+      low = std::min(low, found.number(d, k));
+      high = std::max(high, found.number(d, k));
+    }
+    if (low < high && (own == low || own == high)) names.push_back(short_key(found, k));
+  }
+  return names;
+}
+
 /// Advice that follows from the best design.
 std::string what_to_do(const StoredResult& result, const Result& found, std::size_t q) {
   if (const std::string_view topic = required_otherwise(found, q); !topic.empty()) {
@@ -339,8 +355,9 @@ std::string what_to_do(const StoredResult& result, const Result& found, std::siz
   const std::string_view more = designs_with(found, q, "not told apart").empty() || !narrows(result, found, q)
                                     ? ""
                                     : " To tell the designs apart that are near the best, take more samples.";
-  if (best && (*best == 0 || *best + 1 == found.designs())) {
-    return fmt::format("The best design is at an end of the sweep: look beyond it.{}", more);
+  const std::vector<std::string> ends = best ? keys_at_an_end(found, *best) : std::vector<std::string>();
+  if (!ends.empty()) {
+    return fmt::format("The best design is at an end of {}: look beyond it.{}", fmt::join(ends, " and of "), more);
   }
   return fmt::format("The best design lies within the sweep: look closer around it.{}", more);
 }

@@ -11,6 +11,7 @@
 #include "engine/kinds/limited_vectors.h"
 #include "engine/kinds/what_if/deciding_poses.h"
 #include "engine/kinds/what_if/machines.h"
+#include "engine/kinds/what_if/single_changes.h"
 #include "engine/kinds/what_if/tried.h"
 #include "engine/report/display.h"
 #include "engine/stats/moments.h"
@@ -231,7 +232,7 @@ std::span<const double> what_if_factors() {
   return kFactors;
 }
 
-std::optional<WhatIf> what_if(const JudgedMachines& judged, ArrayPool& pool) {
+std::optional<YieldPrediction> what_if(const JudgedMachines& judged, ArrayPool& pool) {
   const Plan plan(judged.study, judged.poses);
   const LimitedVectors vectors(plan, judged.model, judged.study.analysis);
   std::vector<std::size_t> poses = heaviest_poses(judged.pose_weights);
@@ -253,21 +254,27 @@ std::optional<WhatIf> what_if(const JudgedMachines& judged, ArrayPool& pool) {
   made.linear_error = agrees.linear_error;
   made.missed = deciding.missed + agrees.unsolved;
   made.other_costs = cost_of(judged.errors) - cost_of(sliders);
-  return made;
+  std::vector<double> means;
+  for (const Distribution& one : plan.distributions()) means.push_back(one.mean());
+  const auto changes = single_changes(judged.errors, means, judged.yield, tried, machines, deciding);
+  return YieldPrediction{std::move(made), changes_text(changes, judged.yield)};
 }
 
-void add_what_if(const JudgedMachines& judged, std::string_view after, Page& page) {
-  std::optional<WhatIf> made = what_if(judged, page.figures.pool);
-  if (!made) return;
-  const bool has_costs = std::ranges::any_of(made->sliders, [](const WhatIfSlider& one) { return !one.costs.empty(); });
+std::string add_what_if(const JudgedMachines& judged, std::string_view after, Page& page) {
+  std::optional<YieldPrediction> prediction = what_if(judged, page.figures.pool);
+  if (!prediction) return {};
+  WhatIf& made = prediction->figure;
+  const bool has_costs = std::ranges::any_of(made.sliders, [](const WhatIfSlider& one) { return !one.costs.empty(); });
   Section& section = page.insert_section(after, "what-if", "What if sizes were different");
   section.paragraph(fmt::format(
       "Move the {} that matter most, and see the yield{} follow. It is a prediction, certified only at the study's "
       "sizes: run the study with the sizes you choose. The sliders need a browser with JavaScript.",
-      counted(made->sliders.size(), "size", "sizes"), has_costs ? " and the cost" : ""));
-  const std::string caption = caption_of(*made, judged.conf_level);
-  page.figures.figures.emplace("what-if", *std::move(made));
+      counted(made.sliders.size(), "size", "sizes"), has_costs ? " and the cost" : ""));
+  const std::string caption = caption_of(made, judged.conf_level);
+  page.figures.figures.emplace("what-if", std::move(made));
   section.figure("what-if", caption, "<p>The sliders need JavaScript.</p>");
+  if (!prediction->changes.empty()) section.paragraph(prediction->changes);
+  return prediction->changes;
 }
 
 }  // namespace poesy

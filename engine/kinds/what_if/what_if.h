@@ -45,15 +45,22 @@ std::span<const double> what_if_factors();
 /// machines draw anew at each pose, are left out.
 std::vector<SizedErrors> sized_errors(const Study& study, const PoseSet& poses);
 
+/// Predicted yields at other sizes of errors.
+struct YieldPrediction {
+  WhatIf figure;        ///< the numbers from which the page predicts yields
+  std::string changes;  ///< sentence on the changes that raise the yield most; empty if there is none
+};
+
 /// Predicts yields from the first machines of the study, which are solved again, and from derivatives at the mean
 /// errors. At most ten groups of errors get a slider: those with the largest effects on the limited responses. The
 /// prediction is compared with exact solves of the same machines, with all sizes at their smallest and at their
 /// largest. None if a limit is on several poses together, if the responses are not nearly linear, or if the model does
 /// not reach the poses.
-std::optional<WhatIf> what_if(const JudgedMachines& judged, ArrayPool& pool);
+std::optional<YieldPrediction> what_if(const JudgedMachines& judged, ArrayPool& pool);
 
-/// Adds to the page the section with the predicted yields, if there is a prediction. after: id of the section that the
-/// new one follows.
-void add_what_if(const JudgedMachines& judged, std::string_view after, Page& page);
+/// Adds to the page the section with the predicted yields, if there is a prediction. Returns a sentence on the changes
+/// that raise the yield most; empty if there is no prediction or no such change. after: id of the section that the new
+/// one follows.
+std::string add_what_if(const JudgedMachines& judged, std::string_view after, Page& page);
 
 }  // namespace poesy

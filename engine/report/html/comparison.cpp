@@ -257,7 +257,7 @@ Answer comparison_answer(const Comparison& compared) {
                                                                       in_a.label, some_unknown ? "known " : ""));
   } else {
     lines.emplace_back(a.ranked ? "Largest change" : "Answer",
-                       fmt::format("{}{}: {}, {}, from {} to {}.", a.ranked ? "" : "Largest change: ",
+                       fmt::format("{}{}: {}, {}, from {} to {}.", a.ranked ? "" : "Largest change of ",
                                    a.options.front(), a.items[most], in_a.label, value(in_a, most), value(in_b, most)));
   }
   if (!in_a.low.empty() && !in_b.low.empty()) {

@@ -9,8 +9,6 @@
 namespace poesy {
 namespace {
 
-const Catalog kCatalog = test::fake_catalog();
-
 class StoredStudyOf : public testing::Test {
  protected:
   StoredResult written() {
@@ -25,7 +23,7 @@ class StoredStudyOf : public testing::Test {
 
 TEST_F(StoredStudyOf, AResultIsTheStudyAtItsPoses) {
   const StoredResult result = written();
-  const StoredStudy stored = stored_study(result, path_, kCatalog);
+  const StoredStudy stored = stored_study(result, path_, test::kFakeCatalog);
   EXPECT_EQ(resolved_text(stored.study), result.study_text);
   ASSERT_EQ(stored.poses.poses.size(), test::Example::kPoses);
   EXPECT_EQ(stored.poses.poses.column(1), example_.poses.poses.column(1));
@@ -35,7 +33,7 @@ TEST_F(StoredStudyOf, AResultIsTheStudyAtItsPoses) {
 TEST_F(StoredStudyOf, AFileOfPosesThatIsGoneIsNotMissed) {
   example_.study.poses.select = PoseSelection::Select::file;
   example_.study.poses.file = "gone.csv";
-  const StoredStudy stored = stored_study(written(), path_, kCatalog);
+  const StoredStudy stored = stored_study(written(), path_, test::kFakeCatalog);
   EXPECT_EQ(stored.study.poses.file, "gone.csv");
   EXPECT_EQ(stored.poses.poses.size(), test::Example::kPoses);
 }
@@ -44,10 +42,10 @@ TEST_F(StoredStudyOf, AnotherProgramIsAFileError) {
   StoredResult result = written();
   EXPECT_THROW(stored_study(result, path_, {}), FileError);
   result.study_text += "\n[unheard-of]\n";
-  EXPECT_THROW(stored_study(result, path_, kCatalog), FileError);
+  EXPECT_THROW(stored_study(result, path_, test::kFakeCatalog), FileError);
   result = read_result(path_);
   result.poses = PoseSet(2, {0.0, 0.0});
-  EXPECT_THROW(stored_study(result, path_, kCatalog), FileError);
+  EXPECT_THROW(stored_study(result, path_, test::kFakeCatalog), FileError);
 }
 
 }  // namespace

@@ -12,7 +12,6 @@ namespace poesy {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-const Catalog kCatalog = test::fake_catalog();
 
 std::string with_analysis(std::string_view analysis) {
   return "format = \"poesy-study\"\nversion = 1\nmechanism = { model = \"fake\" }\nposes = { count = 3 "
@@ -22,7 +21,7 @@ std::string with_analysis(std::string_view analysis) {
 
 Study study_of(std::string_view analysis, StudyUse use = StudyUse::run) {
   const test::TempFolder folder;
-  return read_study(folder.write("study.toml", with_analysis(analysis)), kCatalog, use);
+  return read_study(folder.write("study.toml", with_analysis(analysis)), test::kFakeCatalog, use);
 }
 
 TEST(StudyOfCases, SetsErrorsFromWideToNarrow) {
@@ -122,7 +121,7 @@ TEST(StudyOfMonteCarlo, SolvesSamplesAtEachPoseWhateverItsQuantiles) {
   const test::TempFolder folder;
   const std::string path =
       folder.write("study.toml", with_analysis("kind = \"monte-carlo\"\nsamples = 333333333333334\n"));
-  test::expect_input_error([&] { read_study(path, kCatalog, StudyUse::run); }, {path, 5, 1},
+  test::expect_input_error([&] { read_study(path, test::kFakeCatalog, StudyUse::run); }, {path, 5, 1},
                            {"poses times samples is", "at most 1000000000000000", "fewer samples"});
 }
 
@@ -152,17 +151,17 @@ TEST(StudyKinds, HaveNames) {
 TEST(Template, RunsForEveryKind) {
   const test::TempFolder folder;
   for (const StudyKind* kind : study_kinds().all) {
-    const std::string path = folder.write("study.toml", template_text(kCatalog.front(), *kind));
-    EXPECT_EQ(read_study(path, kCatalog, StudyUse::run).analysis.kind, kind);
+    const std::string path = folder.write("study.toml", template_text(test::kFakeCatalog.front(), *kind));
+    EXPECT_EQ(read_study(path, test::kFakeCatalog, StudyUse::run).analysis.kind, kind);
   }
 }
 
 TEST(ResolvedTextOfAnyKind, ReadsBack) {
   const test::TempFolder folder;
   for (const StudyKind* kind : study_kinds().all) {
-    const std::string path = folder.write("study.toml", template_text(kCatalog.front(), *kind));
-    const std::string text = resolved_text(read_study(path, kCatalog, StudyUse::run));
-    EXPECT_EQ(resolved_text(read_study(folder.write("again.toml", text), kCatalog, StudyUse::run)), text);
+    const std::string path = folder.write("study.toml", template_text(test::kFakeCatalog.front(), *kind));
+    const std::string text = resolved_text(read_study(path, test::kFakeCatalog, StudyUse::run));
+    EXPECT_EQ(resolved_text(read_study(folder.write("again.toml", text), test::kFakeCatalog, StudyUse::run)), text);
   }
 }
 
@@ -180,7 +179,7 @@ TEST_P(BadAnalyses, AreRefused) {
   const test::Marked bad(with_analysis(GetParam().analysis));
   const test::TempFolder folder;
   const std::string path = folder.write("study.toml", bad.text);
-  test::expect_input_error([&] { read_study(path, kCatalog, StudyUse::run); }, {path, bad.line, bad.column},
+  test::expect_input_error([&] { read_study(path, test::kFakeCatalog, StudyUse::run); }, {path, bad.line, bad.column},
                            GetParam().words);
 }
 
@@ -236,7 +235,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(StudyOfCases, AsksForACase) {
   const test::TempFolder folder;
   const std::string path = folder.write("study.toml", with_analysis(kEvaluate));
-  test::expect_input_error([&] { read_study(path, kCatalog, StudyUse::run); }, {path, 5, 1},
+  test::expect_input_error([&] { read_study(path, test::kFakeCatalog, StudyUse::run); }, {path, 5, 1},
                            {"at least one case", "[[analysis.cases]]"});
 }
 

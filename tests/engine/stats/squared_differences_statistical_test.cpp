@@ -75,13 +75,13 @@ std::vector<double> values(const Known& known, const std::vector<std::vector<dou
   return list;
 }
 
-struct Coverage {
+struct CoverageOfBoth {
   double S1;
   double ST;
 };
 
 /// The shares of repetitions in which the 95 % intervals of S1 and ST contain the true indices of error p. n: samples.
-Coverage coverage(const Known& known, std::size_t p, std::size_t n, std::size_t repetitions) {
+CoverageOfBoth coverage(const Known& known, std::size_t p, std::size_t n, std::size_t repetitions) {
   std::size_t has_S1 = 0;
   std::size_t has_ST = 0;
   const std::vector<std::uint8_t> all(n, 1);

@@ -5,16 +5,12 @@
 
 #include "engine/stats/moments.h"
 #include "engine/stats/quantile_sketch.h"
+#include "tests/engine/stats/stored_bytes.h"
 
 namespace poesy {
 namespace {
 
-template <class Stats>
-Bytes written(const Stats& stats) {
-  ByteWriter to;
-  write_state(stats, to);
-  return to.take();
-}
+using test::written;
 
 template <class Stats>
 Stats read_back(const Bytes& bytes) {

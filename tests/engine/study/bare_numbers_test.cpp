@@ -10,7 +10,6 @@
 namespace poesy {
 namespace {
 
-const Catalog kCatalog = test::fake_catalog();
 const test::FakeModel kModel;
 
 std::string pose_text(std::string_view table) {
@@ -58,7 +57,7 @@ std::string study_text(std::string_view errors, std::string_view poses = "{ coun
 
 std::string error_text(std::string_view errors, std::string_view table) {
   const test::TempFolder folder;
-  const Study study = study_of_text(study_text(errors), "study.toml", kCatalog, StudyUse::run);
+  const Study study = study_of_text(study_text(errors), "study.toml", test::kFakeCatalog, StudyUse::run);
   const std::vector<std::string> doubts =
       error_table_doubts("e.csv", read_errors(folder.write("e.csv", table), kModel), study);
   EXPECT_LE(doubts.size(), 1u);
@@ -108,7 +107,7 @@ TEST(BareNumbers, OfTheTablesOfAStudy) {
         "override = { delta_2 = { distribution = \"measured\", file = \"parts.csv\", column = \"" +
             column + "\" } }\n",
         "{ select = \"file\", file = \"p.csv\" }");
-    const Study study = read_study(folder.write("study.toml", text), kCatalog, StudyUse::run);
+    const Study study = read_study(folder.write("study.toml", text), test::kFakeCatalog, StudyUse::run);
     return doubts_of(study, select_poses(study.poses, kModel));
   };
   ASSERT_EQ(doubts("hole").size(), 2u);
@@ -124,7 +123,7 @@ TEST(BareNumbers, OfATrajectory) {
   folder.write("c.csv", "t,z,beta,gamma\n0,-0.25,0,0\n1,-250,0,0\n");
   const std::string text = study_text(
       "", "{ select = \"trajectory\", trajectory = { file = \"c.csv\", points = 3, time = [\"0 s\", \"1 s\"] } }");
-  const Study study = read_study(folder.write("study.toml", text), kCatalog, StudyUse::run);
+  const Study study = read_study(folder.write("study.toml", text), test::kFakeCatalog, StudyUse::run);
   const std::vector<std::string> doubts = doubts_of(study, select_poses(study.poses, kModel));
   ASSERT_EQ(doubts.size(), 1u);
   EXPECT_EQ(doubts[0].find("c.csv: z has no unit, so its numbers are in m: pose 2 has z = -125.125 m"), 0u)
@@ -135,7 +134,7 @@ TEST(DrawingText, IsTakenForHalfWidthsAndShares) {
   const auto read = [](const std::string& errors, const std::string& conf_level) {
     std::string text = study_text(errors);
     text.insert(text.find("[errors]"), "conf_level = " + conf_level + "\n");
-    return study_of_text(text, "study.toml", kCatalog, StudyUse::run);
+    return study_of_text(text, "study.toml", test::kFakeCatalog, StudyUse::run);
   };
   for (const char* width : {"0.02 mm", "+-0.02 mm", "+- 0.02 mm", "+/-0.02 mm",
                             "\xC2\xB1"

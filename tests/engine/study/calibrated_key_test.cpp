@@ -28,7 +28,7 @@ Catalog correctable_catalog() {
   return catalog;
 }
 
-const Catalog kCatalog = correctable_catalog();
+const Catalog kCorrectableCatalog = correctable_catalog();
 
 std::string study_text(const std::string& analysis) {
   return "format = \"poesy-study\"\nversion = 1\nmechanism = { model = \"fake\" }\nposes = { count = 3 "
@@ -36,7 +36,7 @@ std::string study_text(const std::string& analysis) {
          analysis;
 }
 
-Study read(const std::string& analysis, const Catalog& catalog = kCatalog) {
+Study read(const std::string& analysis, const Catalog& catalog = kCorrectableCatalog) {
   return study_of_text(study_text(analysis), "study.toml", catalog, StudyUse::run);
 }
 
@@ -69,7 +69,7 @@ TEST(Calibrated, IsInTheResolvedTextWhereItHolds) {
   EXPECT_EQ(plain.find("calibrated"), std::string::npos);
   const std::string text = resolved_text(read("kind = \"monte-carlo\"\ndraws = \"per pose\"\ncalibrated = true\n"));
   EXPECT_NE(text.find("\ncalibrated = true\n"), std::string::npos) << text;
-  const Study again = study_of_text(text, "again.toml", kCatalog, StudyUse::run);
+  const Study again = study_of_text(text, "again.toml", kCorrectableCatalog, StudyUse::run);
   EXPECT_TRUE(again.mechanism.calibrated);
   EXPECT_EQ(resolved_text(again), text);
 }
@@ -87,8 +87,8 @@ TEST(Calibrated, IsRefusedByOtherKindsAndOtherModels) {
     test::expect_input_error([&] { study_of_text(text.text, "study.toml", catalog, StudyUse::run); },
                              {"study.toml", text.line, text.column}, words);
   };
-  refused("kind = \"sensitivity\"\n^calibrated = true\n", kCatalog, {"analysis.calibrated does not belong"});
-  refused("kind = \"monte-carlo\"\ndraws = \"per pose\"\ncalibrated = ^\"yes\"\n", kCatalog,
+  refused("kind = \"sensitivity\"\n^calibrated = true\n", kCorrectableCatalog, {"analysis.calibrated does not belong"});
+  refused("kind = \"monte-carlo\"\ndraws = \"per pose\"\ncalibrated = ^\"yes\"\n", kCorrectableCatalog,
           {"analysis.calibrated", "true or false"});
   refused("kind = \"monte-carlo\"\ndraws = \"per pose\"\ncalibrated = ^true\n", test::fake_catalog(),
           {"analysis.calibrated is true, but model \"fake\" does not separate actuated from constrained directions",
@@ -96,7 +96,7 @@ TEST(Calibrated, IsRefusedByOtherKindsAndOtherModels) {
 }
 
 TEST(Calibrated, IsShownByTemplatesOfModelsThatCanBe) {
-  EXPECT_NE(template_text(kCatalog[0], monte_carlo::kStudy).find("calibrated = false"), std::string::npos);
+  EXPECT_NE(template_text(kCorrectableCatalog[0], monte_carlo::kStudy).find("calibrated = false"), std::string::npos);
   const Catalog others = test::fake_catalog();
   EXPECT_EQ(template_text(others[0], monte_carlo::kStudy).find("calibrated"), std::string::npos);
 }

@@ -16,8 +16,6 @@
 namespace poesy::test {
 namespace {
 
-const Catalog kCatalog = fake_catalog();
-
 constexpr std::string_view kHead =
     "format = \"poesy-study\"\nversion = 1\n[mechanism]\nmodel = \"fake\"\n[poses]\ncount = 3\n";
 
@@ -28,7 +26,7 @@ std::string study_text(const std::string& errors,
 }
 
 Study read(const std::string& text, const std::string& path = "study.toml", StudyUse use = StudyUse::run) {
-  return study_of_text(text, path, kCatalog, use);
+  return study_of_text(text, path, kFakeCatalog, use);
 }
 
 /// Expects that reading the study fails with these words at the place of '^'.

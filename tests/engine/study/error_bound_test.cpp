@@ -30,11 +30,11 @@ Catalog bounded_catalog() {
   return catalog;
 }
 
-const Catalog kCatalog = bounded_catalog();
+const Catalog kBoundedCatalog = bounded_catalog();
 const std::string kHead =
     "format = \"poesy-study\"\nversion = 1\nmechanism = { model = \"fake\" }\nposes = { count = 3 }\n";
 
-void read(const std::string& rest) { study_of_text(kHead + rest, "study.toml", kCatalog, StudyUse::run); }
+void read(const std::string& rest) { study_of_text(kHead + rest, "study.toml", kBoundedCatalog, StudyUse::run); }
 
 struct BadSize {
   const char* name;
@@ -112,7 +112,7 @@ TEST(ErrorBound, OfADefault) {
   const std::string path = "study.toml";
   const std::string tiny =
       "format = \"poesy-study\"\nversion = 1\nmechanism = { model = \"tiny\" }\nposes = { count = 3 }\n";
-  Catalog catalog = kCatalog;
+  Catalog catalog = kBoundedCatalog;
   catalog[0].description.name = "tiny";
   class Tiny final : public test::FakeModel {
     ErrorBound error_bound(FactorIndex /*factor*/) const override { return {1e-4, "everything"}; }

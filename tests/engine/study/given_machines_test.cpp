@@ -13,7 +13,6 @@
 namespace poesy {
 namespace {
 
-const Catalog kCatalog = test::fake_catalog();
 constexpr std::string_view kMachines = "kind = \"monte-carlo\"\ndraws = \"per machine\"\n";
 constexpr std::string_view kRows = "delta_2 [mm],delta_1,operator\n3,0.001,Ann\n1,0.002,Bo\n2,0.002,Cy\n";
 
@@ -26,13 +25,13 @@ class GivenMachines : public ::testing::Test {
  protected:
   Study read(const std::string& text, std::string_view rows = kRows) {
     folder_.write("parts.csv", std::string(rows));
-    return study_of_text(text, folder_.write("study.toml", text), kCatalog, StudyUse::run);
+    return study_of_text(text, folder_.write("study.toml", text), test::kFakeCatalog, StudyUse::run);
   }
   void expect_refused(const std::string& marked, const std::vector<std::string>& words) {
     const test::Marked text(marked);
     const std::string path = folder_.write("study.toml", text.text);
     folder_.write("parts.csv", std::string(kRows));
-    test::expect_input_error([&] { study_of_text(text.text, path, kCatalog, StudyUse::run); },
+    test::expect_input_error([&] { study_of_text(text.text, path, test::kFakeCatalog, StudyUse::run); },
                              {path, text.line, text.column}, words);
   }
   /// Expects that a table of machines with a mistake at '^' is refused with these words.
@@ -71,7 +70,7 @@ TEST_F(GivenMachines, StandInTheResolvedStudyWithoutTheFile) {
   EXPECT_EQ(study.errors.by_factor[1].shape(), Distribution::Shape::uniform);
   const std::string text = resolved_text(study);
   EXPECT_EQ(text.find("parts.csv"), std::string::npos) << text;
-  const Study again = study_of_text(text, "again.toml", kCatalog, StudyUse::run);
+  const Study again = study_of_text(text, "again.toml", test::kFakeCatalog, StudyUse::run);
   EXPECT_EQ(again.errors.by_factor, study.errors.by_factor);
   EXPECT_EQ(again.errors.machines->values, study.errors.machines->values);
   EXPECT_EQ(resolved_text(again), text);

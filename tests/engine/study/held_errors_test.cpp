@@ -9,12 +9,10 @@
 namespace poesy::test {
 namespace {
 
-const Catalog kCatalog = fake_catalog();
-
 Study study_with(const std::string& sections) {
   return study_of_text(
       "format = \"poesy-study\"\nversion = 1\n[mechanism]\nmodel = \"fake\"\n[poses]\ncount = 3\n" + sections,
-      "study.toml", kCatalog, StudyUse::run);
+      "study.toml", kFakeCatalog, StudyUse::run);
 }
 
 /// A study with this background. By default it varies delta_1 and epsilon_1. errors: text of [errors].
@@ -66,7 +64,7 @@ TEST(BackgroundOfAnErrorThatVaries, IsRefusedAtItsName) {
   const auto refused = [](const std::string& analysis, const std::vector<std::string>& words) {
     const Marked marked(
         "format = \"poesy-study\"\nversion = 1\nmechanism.model = \"fake\"\nposes.count = 3\n[analysis]\n" + analysis);
-    expect_input_error([&] { study_of_text(marked.text, "study.toml", kCatalog, StudyUse::run); },
+    expect_input_error([&] { study_of_text(marked.text, "study.toml", kFakeCatalog, StudyUse::run); },
                        {"study.toml", marked.line, marked.column}, words);
   };
   const std::vector<std::string> words{"analysis.background.factors", "'delta_1'", "varies", "leave it out"};

@@ -27,7 +27,7 @@ Catalog limited_catalog() {
   return catalog;
 }
 
-const Catalog kCatalog = limited_catalog();
+const Catalog kLimitedCatalog = limited_catalog();
 const std::string kPerMachine = "kind = \"monte-carlo\"\ndraws = \"per machine\"\n";
 
 std::string text_with(const std::string& analysis, const std::string& limits) {
@@ -37,7 +37,7 @@ std::string text_with(const std::string& analysis, const std::string& limits) {
 
 Study study_with(const std::string& text) {
   const test::TempFolder folder;
-  return read_study(folder.write("study.toml", text), kCatalog, StudyUse::run);
+  return read_study(folder.write("study.toml", text), kLimitedCatalog, StudyUse::run);
 }
 
 /// The only limit of a study with these limits. Expects the same limit after the resolved text is read again.
@@ -120,7 +120,7 @@ TEST(LimitKeys, SayWhatIsWrong) {
     const test::Marked marked(text_with(analysis, limits));
     const test::TempFolder folder;
     const std::string path = folder.write("study.toml", marked.text);
-    test::expect_input_error([&] { static_cast<void>(read_study(path, kCatalog, StudyUse::run)); },
+    test::expect_input_error([&] { static_cast<void>(read_study(path, kLimitedCatalog, StudyUse::run)); },
                              {path, marked.line, marked.column}, words);
   }
 }

@@ -9,13 +9,13 @@
 namespace poesy {
 namespace {
 
-const Catalog kCatalog = test::fake_catalog();
-
 std::string study_text(const std::string& rest) {
   return "format = \"poesy-study\"\nversion = 1\nmechanism = { model = \"fake\" }\nposes = { count = 3 }\n" + rest;
 }
 
-Study read(const std::string& rest) { return study_of_text(study_text(rest), "study.toml", kCatalog, StudyUse::run); }
+Study read(const std::string& rest) {
+  return study_of_text(study_text(rest), "study.toml", test::kFakeCatalog, StudyUse::run);
+}
 
 double sigma(const Study& study, std::size_t factor) { return study.errors.by_factor[factor].standard_deviation(); }
 
@@ -25,7 +25,7 @@ TEST(Patterns, OverrideAllErrorsThatMatch) {
   EXPECT_DOUBLE_EQ(sigma(study, 1), sigma(read(""), 1));
   EXPECT_DOUBLE_EQ(sigma(study, 2), 2e-3);
   const std::string text = resolved_text(study);
-  EXPECT_EQ(resolved_text(study_of_text(text, "again.toml", kCatalog, StudyUse::run)), text);
+  EXPECT_EQ(resolved_text(study_of_text(text, "again.toml", test::kFakeCatalog, StudyUse::run)), text);
 }
 
 TEST(Patterns, YieldToWhatComesLater) {
@@ -40,7 +40,7 @@ TEST(Patterns, YieldToWhatComesLater) {
 TEST(Patterns, AreRefusedInARunWhereEarlierKeysHaveNoEffect) {
   const auto refused = [](const std::string& keys, const std::string& words) {
     const test::Marked text(study_text("[errors.override]\n" + keys));
-    const auto read_for = [&](StudyUse use) { return study_of_text(text.text, "study.toml", kCatalog, use); };
+    const auto read_for = [&](StudyUse use) { return study_of_text(text.text, "study.toml", test::kFakeCatalog, use); };
     test::expect_input_error([&] { read_for(StudyUse::run); }, {"study.toml", text.line, text.column},
                              {words, "write it after them"});
     EXPECT_NO_THROW(read_for(StudyUse::evaluate));
@@ -63,7 +63,7 @@ TEST(Patterns, AreRefusedWhereTheyMatchNothing) {
   const auto refused = [](const std::string& marked, const std::vector<std::string>& words) {
     SCOPED_TRACE(marked);
     const test::Marked text(study_text(marked));
-    test::expect_input_error([&] { study_of_text(text.text, "study.toml", kCatalog, StudyUse::run); },
+    test::expect_input_error([&] { study_of_text(text.text, "study.toml", test::kFakeCatalog, StudyUse::run); },
                              {"study.toml", text.line, text.column}, words);
   };
   refused("[errors.override]\n\"rod_*\" = ^{ distribution = \"normal\", sigma = \"1 mm\" }\n",

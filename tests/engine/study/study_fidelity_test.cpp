@@ -20,7 +20,7 @@ Catalog catalog_with_choice() {
   return catalog;
 }
 
-const Catalog kCatalog = catalog_with_choice();
+const Catalog kFidelityCatalog = catalog_with_choice();
 
 std::string study_with(std::string_view line) {
   return "format = \"poesy-study\"\nversion = 1\n[mechanism]\nmodel = \"fake\"\n" + std::string(line) +
@@ -29,7 +29,7 @@ std::string study_with(std::string_view line) {
 
 Study study_of(std::string_view text) {
   const test::TempFolder folder;
-  return read_study(folder.write("study.toml", text), kCatalog, StudyUse::run);
+  return read_study(folder.write("study.toml", text), kFidelityCatalog, StudyUse::run);
 }
 
 double first_response(const Study& study) {
@@ -59,7 +59,7 @@ TEST(Fidelity, StandsInTheResolvedText) {
 }
 
 TEST(Fidelity, StandsInTheTemplate) {
-  const std::string text = template_text(kCatalog[0], sensitivity::kStudy);
+  const std::string text = template_text(kFidelityCatalog[0], sensitivity::kStudy);
   EXPECT_NE(text.find("\nfidelity = \"exact\"\n"), std::string::npos) << text;
   EXPECT_EQ(study_of(text).mechanism.fidelity, 0u);
   EXPECT_EQ(template_text(test::fake_catalog()[0], sensitivity::kStudy).find("\nfidelity"), std::string::npos);
@@ -69,7 +69,7 @@ TEST(Fidelity, UnknownOneIsRefusedWithASuggestion) {
   const test::Marked study(study_with("fidelity = ^\"frist-order\"\n"));
   const test::TempFolder folder;
   const std::string path = folder.write("study.toml", study.text);
-  test::expect_input_error([&] { read_study(path, kCatalog, StudyUse::run); }, {path, study.line, study.column},
+  test::expect_input_error([&] { read_study(path, kFidelityCatalog, StudyUse::run); }, {path, study.line, study.column},
                            {"mechanism.fidelity is 'frist-order'", "did you mean 'first-order'?"});
 }
 
@@ -102,10 +102,10 @@ TEST(BothFidelities, SecondIsSolvedAlone) {
 }
 
 TEST(BothFidelities, StandInTheTemplateOfSensitivityAlone) {
-  const std::string text = template_text(kCatalog[0], sensitivity::kStudy);
+  const std::string text = template_text(kFidelityCatalog[0], sensitivity::kStudy);
   EXPECT_NE(text.find("# fidelity = \"both\""), std::string::npos) << text;
   EXPECT_NE(text.find("# linearity = 0.01"), std::string::npos) << text;
-  EXPECT_EQ(template_text(kCatalog[0], monte_carlo::kStudy).find("fidelity = \"both\""), std::string::npos);
+  EXPECT_EQ(template_text(kFidelityCatalog[0], monte_carlo::kStudy).find("fidelity = \"both\""), std::string::npos);
   EXPECT_EQ(template_text(test::fake_catalog()[0], sensitivity::kStudy).find("linearity"), std::string::npos);
 }
 
@@ -118,24 +118,24 @@ void expect_refusal(const std::string& marked, const Catalog& catalog, const std
 
 TEST(BothFidelities, OtherKindsRefuseThem) {
   for (const std::string kind : {"monte-carlo", "identification"}) {
-    expect_refusal(study_with("fidelity = ^\"both\"\n") + "[analysis]\nkind = \"" + kind + "\"\n", kCatalog,
+    expect_refusal(study_with("fidelity = ^\"both\"\n") + "[analysis]\nkind = \"" + kind + "\"\n", kFidelityCatalog,
                    {"mechanism.fidelity is \"both\"", "kind = \"" + kind + "\" solves at one fidelity",
                     "write \"exact\" or \"first-order\""});
   }
 }
 
 TEST(BothFidelities, ModelsWithoutTwoRefuseThem) {
-  Catalog three = kCatalog;
+  Catalog three = kFidelityCatalog;
   three[0].description.fidelities.push_back("coarse");
   expect_refusal(study_with("fidelity = ^\"both\"\n"), three, {"mechanism.fidelity is 'both'", "known: exact"});
   expect_refusal(study_with("^fidelity = \"both\"\n"), test::fake_catalog(), {"offers no choice"});
 }
 
 TEST(BothFidelities, LinearityNeedsThem) {
-  expect_refusal(study_with("") + "[analysis]\n^linearity = 0.05\n", kCatalog,
+  expect_refusal(study_with("") + "[analysis]\n^linearity = 0.05\n", kFidelityCatalog,
                  {"analysis.linearity", "without fidelity = \"both\""});
   for (const std::string value : {"0", "1", "-0.5", "2"}) {
-    expect_refusal(study_with("fidelity = \"both\"\n") + "[analysis]\nlinearity = ^" + value + "\n", kCatalog,
+    expect_refusal(study_with("fidelity = \"both\"\n") + "[analysis]\nlinearity = ^" + value + "\n", kFidelityCatalog,
                    {"analysis.linearity", "between 0 and 1", "0.01"});
   }
 }

@@ -14,11 +14,10 @@ namespace poesy {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-const Catalog kCatalog = test::fake_catalog();
 
 Study study_of(std::string_view text, StudyUse use = StudyUse::run) {
   const test::TempFolder folder;
-  return read_study(folder.write("study.toml", text), kCatalog, use);
+  return read_study(folder.write("study.toml", text), test::kFakeCatalog, use);
 }
 
 /// The text of the valid study with one passage replaced.
@@ -89,7 +88,7 @@ TEST(ReadStudy, FillsInDefaults) {
 }
 
 TEST(ReadStudy, VariesAllFactorsWhereTheModelHasNoDeformingSet) {
-  Catalog catalog = kCatalog;
+  Catalog catalog = test::kFakeCatalog;
   catalog[0].description.factor_sets.clear();
   const test::TempFolder folder;
   const Study study = read_study(folder.write("study.toml", kShortest), catalog, StudyUse::run);
@@ -127,15 +126,15 @@ TEST(ReadStudy, FindsThePoseFileBesideTheStudy) {
   const std::string path = folder.write("study.toml",
                                         "format = \"poesy-study\"\nversion = 1\n[mechanism]\nmodel = \"fake\"\n"
                                         "[poses]\nselect = \"file\"\nfile = \"my poses.csv\"\n");
-  const Study study = read_study(path, kCatalog, StudyUse::run);
+  const Study study = read_study(path, test::kFakeCatalog, StudyUse::run);
   EXPECT_EQ(study.poses.file, "my poses.csv");
   EXPECT_EQ(study.poses.from_file.points.column(0), (std::vector<double>{-0.2, -0.25}));
   EXPECT_EQ(to_string(study.poses.place), poses + ":2:1");
   folder.write("my poses.csv", "z,beta,gamma\n-0.2,0,zero\n");
-  test::expect_input_error([&] { read_study(path, kCatalog, StudyUse::run); }, {poses, 2, 8}, {"'zero'"});
+  test::expect_input_error([&] { read_study(path, test::kFakeCatalog, StudyUse::run); }, {poses, 2, 8}, {"'zero'"});
   std::filesystem::remove(poses);
-  EXPECT_THROW(read_study(path, kCatalog, StudyUse::run), FileError);
-  EXPECT_EQ(read_study(path, kCatalog, StudyUse::evaluate).poses.file, "my poses.csv");
+  EXPECT_THROW(read_study(path, test::kFakeCatalog, StudyUse::run), FileError);
+  EXPECT_EQ(read_study(path, test::kFakeCatalog, StudyUse::evaluate).poses.file, "my poses.csv");
 }
 
 TEST(ReadStudyToEvaluate, NeedsTheMechanismOnly) {
@@ -177,7 +176,7 @@ std::string refusal_of_sigma(const std::string& sigma) {
   const std::string errors = "[errors]\nlinear = { distribution = \"normal\", sigma = \"" + sigma + "\" }\n";
   try {
     study_of_text("format = \"poesy-study\"\nversion = 1\n[mechanism]\nmodel = \"fake\"\n[poses]\ncount = 3\n" + errors,
-                  "study.toml", kCatalog, StudyUse::run);
+                  "study.toml", test::kFakeCatalog, StudyUse::run);
     return {};
   } catch (const InputError& error) {
     return error.what();
@@ -203,26 +202,27 @@ TEST(ReadStudy, GuessesNoUnitOfAnotherSize) {
 TEST(ReadStudy, TakesNamesOfMechanismsInCapitals) {
   const std::string study =
       "format = \"poesy-study\"\nversion = 1\n[mechanism]\nmodel = \"Fake\"\n[poses]\ncount = 3\n";
-  EXPECT_EQ(study_of_text(study, "study.toml", kCatalog, StudyUse::run).model().name, "fake");
+  EXPECT_EQ(study_of_text(study, "study.toml", test::kFakeCatalog, StudyUse::run).model().name, "fake");
 }
 
 TEST(ReadStudy, TellsAFolderFromAMissingFile) {
   const test::TempFolder folder;
-  test::expect_input_error([&] { read_study(folder.file("."), kCatalog, StudyUse::run); }, {folder.file("."), 0, 0},
-                           {"folder", "not a study"});
-  EXPECT_THROW(read_study(folder.file("none.toml"), kCatalog, StudyUse::run), FileError);
+  test::expect_input_error([&] { read_study(folder.file("."), test::kFakeCatalog, StudyUse::run); },
+                           {folder.file("."), 0, 0}, {"folder", "not a study"});
+  EXPECT_THROW(read_study(folder.file("none.toml"), test::kFakeCatalog, StudyUse::run), FileError);
 }
 
 TEST(ReadStudy, RefusesAFileTooLarge) {
   const test::TempFolder folder;
   const std::string path = folder.write("study.toml", std::string(2 << 20, '\n'));
-  test::expect_input_error([&] { read_study(path, kCatalog, StudyUse::run); }, {path, 0, 0}, {"1048576 bytes"});
+  test::expect_input_error([&] { read_study(path, test::kFakeCatalog, StudyUse::run); }, {path, 0, 0},
+                           {"1048576 bytes"});
 }
 
 TEST(ReadStudy, RefusesTooManyCellsAcrossFactors) {
   const test::TempFolder folder;
   const std::string path = folder.write("study.toml", changed("count = 20", "count = 5000001"));
-  test::expect_input_error([&] { read_study(path, kCatalog, StudyUse::run); }, {path, 9, 1},
+  test::expect_input_error([&] { read_study(path, test::kFakeCatalog, StudyUse::run); }, {path, 9, 1},
                            {"poses times factors", "10000000"});
 }
 
@@ -243,7 +243,7 @@ TEST_P(BadStudies, AreRefused) {
                                                    : changed(parameter.passage, parameter.replacement));
   const test::TempFolder folder;
   const std::string path = folder.write("study.toml", bad.text);
-  test::expect_input_error([&] { read_study(path, kCatalog, StudyUse::run); }, {path, bad.line, bad.column},
+  test::expect_input_error([&] { read_study(path, test::kFakeCatalog, StudyUse::run); }, {path, bad.line, bad.column},
                            parameter.words);
 }
 

@@ -20,14 +20,14 @@
 namespace poesy {
 namespace {
 
-extern const Catalog kCatalog;
+extern const Catalog kKeyCatalog;
 
-/// The fake mechanism with the description of kCatalog. It accepts calibration, which changes nothing.
+/// The fake mechanism with the description of kKeyCatalog. It accepts calibration, which changes nothing.
 class CalibratedFake : public test::FakeModel {
  public:
   using FakeModel::FakeModel;
 
-  const ModelDescription& description() const override { return kCatalog.front().description; }
+  const ModelDescription& description() const override { return kKeyCatalog.front().description; }
 
   std::unique_ptr<Evaluator> calibrated_evaluator(const SolverOptions& options) const override {
     return evaluator(options);
@@ -45,7 +45,7 @@ class FakeByPlatform final : public CalibratedFake {
 Catalog catalog() {
   Catalog two = test::fake_catalog();
   two.from_text = [](const std::string&, const std::string& path) {
-    CatalogEntry entry = kCatalog.front();
+    CatalogEntry entry = kKeyCatalog.front();
     entry.file = path;
     return entry;
   };
@@ -68,7 +68,7 @@ Catalog catalog() {
   return two;
 }
 
-const Catalog kCatalog = catalog();
+const Catalog kKeyCatalog = catalog();
 
 constexpr std::string_view kHead = R"(format = "poesy-study"
 version = 1
@@ -281,7 +281,7 @@ bool is_name_of_model(const StudyKey& key) {
 /// placeholder for names of the model.
 const StudyKey* description(const StudyTable& table, const std::string& name, const std::string& word) {
   if (const StudyKey* key = table.find(name, word)) return key;
-  const bool is_set = kCatalog.front().description.find_set(name) != nullptr;
+  const bool is_set = kKeyCatalog.front().description.find_set(name) != nullptr;
   for (const StudyKey& key : table.keys) {
     if (is_name_of_model(key) && (key.name == "SET") == is_set) return &key;
   }
@@ -349,7 +349,7 @@ std::string read(const std::string& text) {
   static const std::string machines = folder.write("machines.csv", "delta_2 [mm]\n1\n2\n");
   static const std::string mechanism = folder.write("mechanism.toml", "of no interest");
   static const std::string curve = folder.write("curve.csv", "t,z,beta,gamma\n0,-0.2,0,0\n1,-0.2,0.1,0\n");
-  return resolved_text(read_study(folder.write("study.toml", text), kCatalog, StudyUse::run));
+  return resolved_text(read_study(folder.write("study.toml", text), kKeyCatalog, StudyUse::run));
 }
 
 /// The message with which the study is refused. Empty if it is accepted.
@@ -503,7 +503,7 @@ bool in_templates(const StudyTable& table, const StudyKey& key) {
 
 TEST(Template, ExplainsEveryKeyInTheWordsOfItsDescription) {
   std::string all;
-  for (const StudyKind* kind : study_kinds().all) all += words_of(template_text(kCatalog.front(), *kind));
+  for (const StudyKind* kind : study_kinds().all) all += words_of(template_text(kKeyCatalog.front(), *kind));
   for (const StudyTable& table : study_kinds().tables) {
     for (const StudyKey& key : table.keys) {
       if (!in_templates(table, key) || is_used_elsewhere(table, key)) continue;

@@ -10,19 +10,17 @@
 namespace poesy {
 namespace {
 
-const Catalog kCatalog = test::fake_catalog();
-
 std::string study_with(std::string_view analysis, std::string_view mechanism = "") {
   return "format = \"poesy-study\"\nversion = 1\n[mechanism]\nmodel = \"fake\"\n" + std::string(mechanism) +
          "[poses]\ncount = 3\n[analysis]\n" + std::string(analysis);
 }
 
-Study study_of(const std::string& text, const Catalog& catalog = kCatalog) {
+Study study_of(const std::string& text, const Catalog& catalog = test::kFakeCatalog) {
   return study_of_text(text, "study.toml", catalog, StudyUse::run);
 }
 
 void expect_refusal(const std::string& marked, const std::vector<std::string>& words,
-                    const Catalog& catalog = kCatalog) {
+                    const Catalog& catalog = test::kFakeCatalog) {
   const test::Marked study(marked);
   test::expect_input_error([&] { study_of(study.text, catalog); }, {"study.toml", study.line, study.column}, words);
 }
@@ -60,7 +58,7 @@ TEST(AdaptiveSamples, StandInTheResolvedText) {
 
 TEST(AdaptiveSamples, StandInTheTemplate) {
   for (const test::KindOfStudy kind : {&sensitivity::kStudy, &monte_carlo::kStudy}) {
-    std::string text = template_text(kCatalog[0], *kind);
+    std::string text = template_text(test::kFakeCatalog[0], *kind);
     const std::string_view fixed = "\nsamples = 1000";
     const std::string_view shown = "\n# samples = {";
     ASSERT_NE(text.find(shown), std::string::npos) << text;
@@ -68,7 +66,7 @@ TEST(AdaptiveSamples, StandInTheTemplate) {
     text.replace(text.find(fixed), 1, "\n# ");
     EXPECT_EQ(study_of(text).analysis.adaptive->relative_error, 0.01);
   }
-  EXPECT_EQ(template_text(kCatalog[0], evaluate::kStudy).find("relative_error"), std::string::npos);
+  EXPECT_EQ(template_text(test::kFakeCatalog[0], evaluate::kStudy).find("relative_error"), std::string::npos);
 }
 
 TEST(AdaptiveSamples, WrongOnesAreRefused) {
@@ -92,7 +90,7 @@ TEST(AdaptiveSamples, WrongOnesAreRefused) {
 }
 
 TEST(AdaptiveSamples, TwoFidelitiesRefuseThem) {
-  Catalog catalog = kCatalog;
+  Catalog catalog = test::kFakeCatalog;
   catalog[0].description.fidelities = {"exact", "first-order"};
   expect_refusal(study_with("samples = ^{ max = 5000, relative_error = 0.01 }\n", "fidelity = \"both\"\n"),
                  {"analysis.samples", "same samples", "write a fixed number", "one fidelity"}, catalog);

@@ -11,12 +11,10 @@
 namespace poesy {
 namespace {
 
-const Catalog kCatalog = test::fake_catalog();
-
 Study study_of(std::string_view text, StudyUse use = StudyUse::run) {
   const test::TempFolder folder;
   folder.write("poses.csv", "z,beta,gamma\n-0.2,0,0\n");
-  return read_study(folder.write("study.toml", text), kCatalog, use);
+  return read_study(folder.write("study.toml", text), test::kFakeCatalog, use);
 }
 
 std::string shortest_study(std::string_view rest) {
@@ -205,7 +203,7 @@ TEST(ResolvedTextOf, AStudyToEvaluateReadsBackToEvaluate) {
 }
 
 TEST(SetName, IsTheSetThatEqualsTheFactorsInOrder) {
-  ModelDescription model = kCatalog[0].description;
+  ModelDescription model = test::kFakeCatalog[0].description;
   const std::vector<FactorIndex> all{FactorIndex(0), FactorIndex(1), FactorIndex(2)};
   const std::vector<FactorIndex> reversed{FactorIndex(1), FactorIndex(0)};
   EXPECT_EQ(set_name(all, model), "all");
@@ -225,7 +223,7 @@ TEST(ReadableValue, IsExactAndShort) {
 }
 
 TEST(Template, RunsAsItIsAndAsksForTheUsualStudy) {
-  const Study study = study_of(template_text(kCatalog[0], sensitivity::kStudy));
+  const Study study = study_of(template_text(test::kFakeCatalog[0], sensitivity::kStudy));
   const Study usual = study_of("title = \"Sensitivity of fake\"\n" +
                                shortest_study("[poses]\ncount = 158\n[analysis]\nbackground = { factors = "
                                               "\"benign\", linear = \"1 mm\", angular = \"1 deg\" }\n"));
@@ -233,7 +231,7 @@ TEST(Template, RunsAsItIsAndAsksForTheUsualStudy) {
 }
 
 TEST(Template, RunsForAModelWithoutSetsAndGeometry) {
-  Catalog catalog = kCatalog;
+  Catalog catalog = test::kFakeCatalog;
   catalog[0].description.factor_sets.clear();
   catalog[0].description.geometry.clear();
   catalog[0].description.workspace_note = "two\nlines";
@@ -246,7 +244,7 @@ TEST(Template, RunsForAModelWithoutSetsAndGeometry) {
 }
 
 TEST(Template, NamesEveryKey) {
-  const std::string text = template_text(kCatalog[0], sensitivity::kStudy);
+  const std::string text = template_text(test::kFakeCatalog[0], sensitivity::kStudy);
   for (const char* key : {"format = ",        "version = ",
                           "title = ",         "model = ",
                           "arm = ",           "select = ",
@@ -274,7 +272,7 @@ TEST(Template, NamesEveryKey) {
 
 /// Each trajectory that a template shows as a comment can be read if it replaces the workspace.
 TEST(Template, ShowsTrajectoriesThatRead) {
-  const std::string text = template_text(kCatalog[0], sensitivity::kStudy);
+  const std::string text = template_text(test::kFakeCatalog[0], sensitivity::kStudy);
   std::size_t shown = 0;
   for (std::size_t at = text.find("# trajectory = "); at != std::string::npos;
        at = text.find("# trajectory = ", at + 1)) {

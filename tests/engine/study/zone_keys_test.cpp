@@ -28,13 +28,15 @@ Catalog with_axis(const Zone& location) {
   return catalog;
 }
 
-const Catalog kCatalog = with_axis({"position", 5e-5, "A|B"});
+const Catalog kZoneCatalog = with_axis({"position", 5e-5, "A|B"});
 
 std::string study_text(const std::string& rest) {
   return "format = \"poesy-study\"\nversion = 1\nmechanism = { model = \"fake\" }\nposes = { count = 3 }\n" + rest;
 }
 
-Study read(const std::string& rest) { return study_of_text(study_text(rest), "study.toml", kCatalog, StudyUse::run); }
+Study read(const std::string& rest) {
+  return study_of_text(study_text(rest), "study.toml", kZoneCatalog, StudyUse::run);
+}
 
 double sigma(const Study& study, std::size_t factor) { return study.errors.by_factor[factor].standard_deviation(); }
 
@@ -55,7 +57,7 @@ TEST(ZoneKeys, AreAskedForWhereAFeatureVariesWithoutASize) {
 }
 
 TEST(ZoneKeys, AreNotEnoughForAnErrorThatNoZoneLimits) {
-  Catalog only_orientation = kCatalog;
+  Catalog only_orientation = kZoneCatalog;
   Feature& bore = only_orientation.front().description.features.front();
   bore.location.reset();
   bore.orientation = Zone{"parallelism", 2e-5, "A"};
@@ -82,7 +84,7 @@ TEST(ZoneKeys, AreReadBackFromTheirText) {
     const Study study = read(std::string("errors.zones = { distribution = \"normal\", ") + use + " }\n");
     const std::string text = resolved_text(study);
     EXPECT_EQ(text.find("[errors.override]"), std::string::npos) << text;
-    const Study again = study_of_text(text, "again.toml", kCatalog, StudyUse::run);
+    const Study again = study_of_text(text, "again.toml", kZoneCatalog, StudyUse::run);
     EXPECT_EQ(again.errors.by_factor, study.errors.by_factor) << use;
     EXPECT_EQ(resolved_text(again), text);
   }
@@ -90,7 +92,7 @@ TEST(ZoneKeys, AreReadBackFromTheirText) {
 
 TEST(ZoneKeys, AreRefusedWithPlaceAndRemedy) {
   const auto refused = [](const std::string& marked, const std::vector<std::string>& words,
-                          const Catalog& catalog = kCatalog) {
+                          const Catalog& catalog = kZoneCatalog) {
     SCOPED_TRACE(marked);
     const test::Marked text(study_text(marked));
     test::expect_input_error([&] { study_of_text(text.text, "study.toml", catalog, StudyUse::run); },

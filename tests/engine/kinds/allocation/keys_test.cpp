@@ -44,14 +44,14 @@ Catalog catalog() {
   return bounded;
 }
 
-const Catalog kCatalog = catalog();
+const Catalog kAllocationCatalog = catalog();
 
 const StudyKinds& kinds() {
   static const StudyKinds some = study_kinds_of({&sensitivity::kStudy, &monte_carlo::kStudy, &kStudy}, {});
   return some;
 }
 
-Study read(const std::string& text, const Catalog& models = kCatalog, StudyUse use = StudyUse::run) {
+Study read(const std::string& text, const Catalog& models = kAllocationCatalog, StudyUse use = StudyUse::run) {
   return study_of_text(text, "study.toml", models, use, kinds());
 }
 
@@ -66,7 +66,7 @@ std::string with_analysis(const std::string& analysis, const std::string& errors
 }
 
 Study study_of(const std::string& analysis, StudyUse use = StudyUse::run) {
-  return read(with_analysis(analysis), kCatalog, use);
+  return read(with_analysis(analysis), kAllocationCatalog, use);
 }
 
 const Options& options_of(const Study& study) { return asked_of<Options>(study.analysis); }
@@ -266,7 +266,7 @@ TEST(BlockOfParts, JoinsTheErrorsOfIdenticalLimbs) {
 
 TEST(BlockOfParts, JoinsOnlyErrorsOfOneFrameAndDimension) {
   for (const bool of_frame : {true, false}) {
-    Catalog other = kCatalog;
+    Catalog other = kAllocationCatalog;
     std::vector<Factor>& factors = other.front().description.factors;
     if (of_frame) factors[2].frame = 1;
     if (!of_frame) factors[2].dimension = Dimension::angle;
@@ -382,7 +382,7 @@ void expect_same(const AllocatedPart& a, const AllocatedPart& b) {
   }
 }
 
-void expect_reads_back(const std::string& written, const Catalog& models = kCatalog) {
+void expect_reads_back(const std::string& written, const Catalog& models = kAllocationCatalog) {
   const Study study = read(written, models);
   const std::string text = resolved_text(study);
   for (const StudyUse use : {StudyUse::run, StudyUse::evaluate}) {
@@ -461,7 +461,7 @@ bounds = ["0 m", "0.001 m"]
 }
 
 TEST(TemplateOfTolerances, RunsForEveryMechanism) {
-  for (const Catalog* models : {&registry(), &kCatalog}) {
+  for (const Catalog* models : {&registry(), &kAllocationCatalog}) {
     for (const CatalogEntry& entry : *models) {
       const std::string text = template_text(entry, kStudy, kinds());
       const Study study = read(text, *models);
@@ -474,7 +474,7 @@ TEST(TemplateOfTolerances, RunsForEveryMechanism) {
 }
 
 TEST(TemplateOfTolerances, ExplainsEveryKey) {
-  const std::string text = template_text(kCatalog.front(), kStudy, kinds());
+  const std::string text = template_text(kAllocationCatalog.front(), kStudy, kinds());
   for (const std::string_view path : {"analysis.parts", "analysis.parts.cost", "analysis.parts.processes"}) {
     const StudyTable* table = find_table(kinds().tables, path);
     ASSERT_NE(table, nullptr);
@@ -492,7 +492,7 @@ TEST(TemplateOfTolerances, ExplainsEveryKey) {
 }
 
 TEST(TemplateOfTolerances, NeedsErrorsAndResponses) {
-  ModelDescription model = kCatalog.front().description;
+  ModelDescription model = kAllocationCatalog.front().description;
   EXPECT_FALSE(kStudy.no_template(model));
   model.responses.clear();
   EXPECT_TRUE(kStudy.no_template(model));

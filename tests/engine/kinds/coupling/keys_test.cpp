@@ -25,7 +25,7 @@ Catalog catalog() {
   return components;
 }
 
-const Catalog kCatalog = catalog();
+const Catalog kCouplingCatalog = catalog();
 
 std::string with_analysis(std::string_view analysis) {
   return "format = \"poesy-study\"\nversion = 1\nmechanism = { model = \"fake\" }\nposes = { count = 3 "
@@ -34,7 +34,7 @@ std::string with_analysis(std::string_view analysis) {
 }
 
 Options coupling_of(const std::string& analysis, StudyUse use = StudyUse::run) {
-  return asked_of<Options>(study_of_text(with_analysis(analysis), "study.toml", kCatalog, use).analysis);
+  return asked_of<Options>(study_of_text(with_analysis(analysis), "study.toml", kCouplingCatalog, use).analysis);
 }
 
 const std::string kSizes = "linear = [\"1 mm\"]\nangular = [\"1 deg\"]\n";
@@ -44,8 +44,8 @@ TEST(StudyOfCoupling, LooksForWorstCasesUnlessToldOtherwise) {
   EXPECT_EQ(coupling_of(kSizes).worst_case, UnknownSigns::search);
   EXPECT_EQ(coupling_of(kSizes + "worst_case = \"sum\"\n").worst_case, UnknownSigns::sum);
   const Study study =
-      study_of_text(with_analysis(kSizes + "worst_case = \"sum\"\n"), "study.toml", kCatalog, StudyUse::run);
-  const Study again = study_of_text(resolved_text(study), "resolved.toml", kCatalog, StudyUse::run);
+      study_of_text(with_analysis(kSizes + "worst_case = \"sum\"\n"), "study.toml", kCouplingCatalog, StudyUse::run);
+  const Study again = study_of_text(resolved_text(study), "resolved.toml", kCouplingCatalog, StudyUse::run);
   EXPECT_EQ(asked_of<Options>(again.analysis).worst_case, UnknownSigns::sum);
 }
 
@@ -82,7 +82,7 @@ factors = ["epsilon_1"]
 
 TEST(StudyOfCoupling, KeepsWhatThePatternLeaves) {
   const Study study =
-      study_of_text(with_analysis(kSizes + "components = [\"x\"]\n"), "study.toml", kCatalog, StudyUse::run);
+      study_of_text(with_analysis(kSizes + "components = [\"x\"]\n"), "study.toml", kCouplingCatalog, StudyUse::run);
   EXPECT_EQ(asked_of<Options>(study.analysis).pattern.axes, std::vector<std::string>{"x"});
   EXPECT_EQ(asked_of<Options>(study.analysis).sources[0].factors.size(), 2u);  // delta_2 was named explicitly
   EXPECT_EQ(study.analysis.factors, (std::vector<FactorIndex>{FactorIndex(0), FactorIndex(2)}));
@@ -112,9 +112,9 @@ TEST(ResolvedTextOfCoupling, ReadsBackToTheSameStudy) {
   for (const std::string pattern :
        {"", "limbs = \"independent\"\n", "components = \"independent\"\n", "components = [\"z\", \"x\"]\n",
         "limbs = 1\nsources = [{ name = \"a b\", factors = [\"epsilon_1\"] }, { factors = [\"delta_1\"] }]\n"}) {
-    const Study study = study_of_text(with_analysis(kSizes + pattern), "study.toml", kCatalog, StudyUse::run);
+    const Study study = study_of_text(with_analysis(kSizes + pattern), "study.toml", kCouplingCatalog, StudyUse::run);
     const std::string text = resolved_text(study);
-    const Study again = study_of_text(text, "again.toml", kCatalog, StudyUse::run);
+    const Study again = study_of_text(text, "again.toml", kCouplingCatalog, StudyUse::run);
     EXPECT_EQ(resolved_text(again), text);
     const Options& a = asked_of<Options>(study.analysis);
     const Options& b = asked_of<Options>(again.analysis);
@@ -136,8 +136,8 @@ TEST(ResolvedTextOfCoupling, ReadsBackToTheSameStudy) {
 TEST(StudyOfCoupling, BoundsWhatAResultHolds) {
   std::string many = with_analysis(kSizes);
   many.replace(many.find("count = 3"), 9, "count = 9999999");
-  test::expect_input_error([&] { study_of_text(many, "study.toml", kCatalog, StudyUse::run); }, {"study.toml", 4, 9},
-                           {"poses times sizes times sets of sources", "at most 10000000"});
+  test::expect_input_error([&] { study_of_text(many, "study.toml", kCouplingCatalog, StudyUse::run); },
+                           {"study.toml", 4, 9}, {"poses times sizes times sets of sources", "at most 10000000"});
 }
 
 struct BadCoupling {
@@ -152,7 +152,7 @@ class BadCouplings : public testing::TestWithParam<BadCoupling> {};
 
 TEST_P(BadCouplings, AreRefused) {
   const test::Marked bad(with_analysis(GetParam().analysis));
-  test::expect_input_error([&] { study_of_text(bad.text, "study.toml", kCatalog, StudyUse::run); },
+  test::expect_input_error([&] { study_of_text(bad.text, "study.toml", kCouplingCatalog, StudyUse::run); },
                            {"study.toml", bad.line, bad.column}, GetParam().words);
 }
 
@@ -216,13 +216,13 @@ void expect_error_of_section(const std::string& analysis, const Catalog& models,
 }
 
 TEST(StudyOfCoupling, AsksForTheSizesOfItsErrors) {
-  expect_error_of_section("linear = [\"1 mm\"]\n", kCatalog,
+  expect_error_of_section("linear = [\"1 mm\"]\n", kCouplingCatalog,
                           {"'angular' is missing", "'epsilon_1'", "angular = [\"0.1 deg\"]"});
-  expect_error_of_section("angular = [\"1 deg\"]\n", kCatalog, {"'linear' is missing", "'delta_1'"});
+  expect_error_of_section("angular = [\"1 deg\"]\n", kCouplingCatalog, {"'linear' is missing", "'delta_1'"});
 }
 
 TEST(StudyOfCoupling, AsksForSourcesWhereTheModelSuggestsNone) {
-  Catalog without = kCatalog;
+  Catalog without = kCouplingCatalog;
   without.front().description.sources.clear();
   expect_error_of_section(kSizes, without, {"model \"fake\" suggests none", "2 to 8 [[analysis.sources]]"});
   const Study study =
@@ -231,7 +231,7 @@ TEST(StudyOfCoupling, AsksForSourcesWhereTheModelSuggestsNone) {
 }
 
 TEST(StudyOfCoupling, SaysWhichUsualSourceThePatternEmpties) {
-  expect_error_of_section(kSizes + "limbs = 2\n", kCatalog, {"source 'D' has no factor"});
+  expect_error_of_section(kSizes + "limbs = 2\n", kCouplingCatalog, {"source 'D' has no factor"});
 }
 
 TEST(StudyOfAnotherKind, RefusesTheKeysOfCoupling) {
@@ -240,15 +240,15 @@ TEST(StudyOfAnotherKind, RefusesTheKeysOfCoupling) {
         "format = \"poesy-study\"\nversion = 1\nmechanism = { model = \"fake\" }\nposes = { count "
         "= 3 }\n[analysis]\n" +
         key + "\n";
-    test::expect_input_error([&] { study_of_text(text, "study.toml", kCatalog, StudyUse::run); }, {"study.toml", 6, 1},
-                             {"does not belong to kind = \"sensitivity\""});
+    test::expect_input_error([&] { study_of_text(text, "study.toml", kCouplingCatalog, StudyUse::run); },
+                             {"study.toml", 6, 1}, {"does not belong to kind = \"sensitivity\""});
   }
 }
 
 TEST(TemplateOfCoupling, ShowsTheSizesThatItsSourcesNeed) {
-  const std::string text = template_text(kCatalog.front(), kStudy);
+  const std::string text = template_text(kCouplingCatalog.front(), kStudy);
   EXPECT_NE(text.find("\nangular = ["), std::string::npos);
-  Catalog lengths = kCatalog;
+  Catalog lengths = kCouplingCatalog;
   lengths.front().description.factor_sets.push_back({"lengths", "", {FactorIndex(0)}});
   lengths.front().description.sources.front().set = "lengths";
   EXPECT_NE(template_text(lengths.front(), kStudy).find("\n# angular = ["), std::string::npos);
