@@ -18,8 +18,8 @@ struct PredictedChange {
 };
 
 /// The yields that are predicted if one change alone is made: errors of one name, in all limbs, have half their size,
-/// or mean zero, or the means of the limited vectors over the machines are removed at each pose. The largest yield comes
-/// first. means: [errors] SI. yield: that of the study.
+/// or mean zero, or the means of the limited vectors over the machines are removed at each pose. The largest yield
+/// comes first. means: [errors] SI. yield: that of the study.
 std::vector<PredictedChange> single_changes(std::span<const SizedErrors> errors, std::span<const double> means,
                                             double yield, const TriedMachines& tried, const WhatIfMachines& machines,
                                             const DecidingPoses& deciding);
