@@ -110,14 +110,14 @@ class Drawing(ProgramTest):
         self.assertNotIn("'", "".join(lines))
 
     def test_advice_names_features(self):
-        """The feature with the largest share is the first that the report advises to make smaller, not one of its errors."""
+        """The report advises to halve a feature in all limbs, not one of its errors: one with a share that is among the largest."""
         self.result("mc", 'kind = "monte-carlo"\ndraws = "per machine"\nsamples = 2000\nlimits = { tip_position = "0.12 mm" }').close()
         tables = json.loads(self.succeeds("show", "mc.h5", "--json"))["tables"]
         rows = next(table for table in tables if table["name"] == "features")["rows"]
-        # Features whose shares are too close to the largest to be told apart.
-        first = [row["feature"] for row in rows if row["share"] > 0.9 * rows[0]["share"]]
+        # What makes most of the scatter does not always cost most yield.
+        first = [re.sub(r"_\d$", "", row["feature"]) for row in rows if row["share"] > 0.5 * rows[0]["share"]]
         self.succeeds("report", "mc.h5", "-o", "mc.html")
-        advice = re.search(r"what adds most to the scatter of tip_position: (\w+) \(", (self.folder / "mc.html").read_text())
+        advice = re.search(r"for one change alone, now [\d.]+ %: halving (\w+) ", (self.folder / "mc.html").read_text())
         self.assertIn(advice.group(1), first)
 
     def test_template_states_only_the_sizes_that_it_uses(self):

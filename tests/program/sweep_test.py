@@ -208,7 +208,9 @@ class Sweep(ProgramTest):
         self.assertGreater(rows[0]["value"], rows[2]["value"])
         self.assertEqual(rows[2]["verdict"], "worse")
         self.succeeds("report", "sweep.h5", "-o", "sweep.html")
-        self.assertIn("sigma = 0.02 deg", (self.folder / "sweep.html").read_text())
+        page = (self.folder / "sweep.html").read_text()
+        self.assertIn("sigma = 0.02 deg", page)
+        self.assertIn("The best design is at an end of l_A and of sigma: look beyond it.", page)
 
     def test_no_best_design_of_other_limits(self):
         self.swept(keys=("analysis.limits.gap=0.04,0.05 mm", "errors.angular.sigma=0.01,0.005 deg"))
