@@ -20,7 +20,7 @@ poesy_test(three_prs_coupling_test LABELS property SOURCES models/three_prs/coup
 poesy_test(registry_test LABELS property SOURCES models/registry_test.cpp LINKS poesy_kinds poesy_models)
 poesy_test(file_model_test LABELS unit SOURCES models/file/errors_test.cpp models/file/model_test.cpp
                    models/file/separation_test.cpp
-           LINKS poesy_models nlohmann_json::nlohmann_json DATA)
+           LINKS poesy_models nlohmann_json::nlohmann_json DATA ALONE)
 poesy_test(compiled_test LABELS regression SOURCES models/file/compiled_test.cpp models/file/nategh_agheli_test.cpp
            LINKS poesy_models DATA)
 poesy_test(mechanism_file_test LABELS property
@@ -29,7 +29,7 @@ poesy_test(mechanism_file_test LABELS property
                    models/file/mobility_test.cpp models/file/oracle_test.cpp models/file/rounding_test.cpp
                    models/file/tracking_test.cpp
                    models/file/pose_tracker_test.cpp
-           LINKS poesy_models nlohmann_json::nlohmann_json DATA)
+           LINKS poesy_models nlohmann_json::nlohmann_json DATA ALONE)
 poesy_test(assembly_oracle_test LABELS unit SOURCES models/assembly/closure_test.cpp models/assembly/oracle_test.cpp
            LINKS poesy_models nlohmann_json::nlohmann_json DATA)
 poesy_test(assembly_properties_test LABELS property
