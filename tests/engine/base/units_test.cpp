@@ -74,9 +74,9 @@ TEST(Dimensions, OfALineAreReadInTheUnitsThatPeopleUse) {
   EXPECT_EQ(with_readable_quantities("limits.tip = \"0.00015 m\""), "limits.tip = \"0.15 mm\"");
   EXPECT_EQ(with_readable_quantities("[\"-2e-04 m\", \"name\"]"), "[\"-0.2 mm\", \"name\"]");
   EXPECT_EQ(with_readable_quantities("title = \"open"), "title = \"open");
-  using Lines = std::pair<std::string, std::string>;
-  EXPECT_EQ(with_readable_quantities(Lines("\"0.0001 m\"", "\"0.0002 m\"")), Lines("\"0.1 mm\"", "\"0.2 mm\""));
-  const Lines alike("\"0.0001 m\"", "\"0.00010000000000000002 m\"");
+  using TwoLines = std::pair<std::string, std::string>;
+  EXPECT_EQ(with_readable_quantities(TwoLines("\"0.0001 m\"", "\"0.0002 m\"")), TwoLines("\"0.1 mm\"", "\"0.2 mm\""));
+  const TwoLines alike("\"0.0001 m\"", "\"0.00010000000000000002 m\"");
   EXPECT_EQ(with_readable_quantities(alike), alike);
 }
 

@@ -56,18 +56,18 @@ TEST(Stream, IsUniformByChiSquare) {
 }
 
 TEST(Stream, IsUniformByKolmogorovAndSmirnov) {
-  constexpr std::size_t kDraws = 1000000;
-  std::vector<double> draws = uniforms(address_of(24, 157), kDraws);
+  constexpr std::size_t kUniforms = 1000000;
+  std::vector<double> draws = uniforms(address_of(24, 157), kUniforms);
   std::sort(draws.begin(), draws.end());
   double distance = 0.0;
-  for (std::size_t k = 0; k < kDraws; ++k) {
-    const double below = static_cast<double>(k) / kDraws;
-    const double above = static_cast<double>(k + 1) / kDraws;
+  for (std::size_t k = 0; k < kUniforms; ++k) {
+    const double below = static_cast<double>(k) / kUniforms;
+    const double above = static_cast<double>(k + 1) / kUniforms;
     distance = std::max({distance, draws[k] - below, above - draws[k]});
   }
   // The quantiles of Kolmogorov's distribution for 0.0005 and 0.9995 are 0.3471 / sqrt(n) and 2.0368 / sqrt(n).
-  EXPECT_GT(distance, 0.3471 / std::sqrt(kDraws));
-  EXPECT_LT(distance, 2.0368 / std::sqrt(kDraws));
+  EXPECT_GT(distance, 0.3471 / std::sqrt(kUniforms));
+  EXPECT_LT(distance, 2.0368 / std::sqrt(kUniforms));
 }
 
 TEST(Stream, FirstDrawsOverAllAddressesAreUniform) {
@@ -81,14 +81,14 @@ TEST(Stream, FirstDrawsOverAllAddressesAreUniform) {
 }
 
 TEST(Stream, EachBitIsSetHalfTheTime) {
-  constexpr int kDraws = 100000;
+  constexpr int kBlocks = 100000;
   std::vector<int> set(64, 0);
-  for (std::size_t k = 0; k < kDraws; ++k) {
+  for (std::size_t k = 0; k < kBlocks; ++k) {
     const std::uint64_t bits = random_bits(address_of(7, 9), SampleIndex(k));
     for (std::size_t b = 0; b < 64; ++b) set[b] += static_cast<int>(bits >> b & 1);
   }
   // alpha = 0.001 divided by 64 bits (Bonferroni) gives z = 4.32.
-  for (const int count : set) EXPECT_LE(std::abs(count - kDraws / 2), 4.32 * 0.5 * std::sqrt(kDraws));
+  for (const int count : set) EXPECT_LE(std::abs(count - kBlocks / 2), 4.32 * 0.5 * std::sqrt(kBlocks));
 }
 
 TEST(Stream, NeighbourFactorsAreIndependent) {

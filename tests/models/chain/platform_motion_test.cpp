@@ -101,22 +101,22 @@ class PlatformMotion : public test::WithIsa {};
 
 TEST_P(PlatformMotion, IsTheMeanOfTheLimbs) {
   std::mt19937_64 engine(7);
-  constexpr std::size_t kCount = 11;
+  constexpr std::size_t kSets = 11;
   std::size_t compared = 0;
   for (const std::vector<std::size_t>& joints :
        {std::vector<std::size_t>{4, 4, 4}, {3, 3}, {4, 4, 4, 4}, {5, 5, 5, 5}}) {
     const Example one = example(joints, engine);
     const std::size_t factors = one.model.terms.size();
-    const std::vector<double> values = random_displacements(factors * kCount, 1e-3, engine);
-    const Outcome found = evaluate(one, values, kCount, Fidelity::exact);
-    for (std::size_t b = 0; b < kCount; ++b) {
+    const std::vector<double> values = random_displacements(factors * kSets, 1e-3, engine);
+    const Outcome found = evaluate(one, values, kSets, Fidelity::exact);
+    for (std::size_t b = 0; b < kSets; ++b) {
       if (!solved(found.status[b])) continue;
       ++compared;
       std::vector<double> errors;
-      for (std::size_t f = 0; f < factors; ++f) errors.push_back(values[f * kCount + b]);
+      for (std::size_t f = 0; f < factors; ++f) errors.push_back(values[f * kSets + b]);
       const std::vector<double> truth = truth_of(one, errors);
       for (std::size_t r = 0; r < truth.size(); ++r) {
-        EXPECT_NEAR(found.responses[(kDeformations + r) * kCount + b], truth[r], 1e-11) << r;
+        EXPECT_NEAR(found.responses[(kDeformations + r) * kSets + b], truth[r], 1e-11) << r;
       }
     }
   }
