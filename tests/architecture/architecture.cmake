@@ -60,7 +60,8 @@ add_library(public_headers_alone OBJECT ${header_sources})
 target_link_libraries(public_headers_alone PRIVATE poesy_engine poesy_models poesy_options)
 target_compile_options(public_headers_alone PRIVATE -O0)
 # Where all is built at once, two libraries are read once for all of them: a header that needs them, or what they include,
-# and does not say so is found by a build without POESY_UNITY.
+# and does not say so is found by a build without POESY_UNITY. It is a target of its own there, which takes minutes.
 if(POESY_UNITY)
+  set_target_properties(public_headers_alone PROPERTIES EXCLUDE_FROM_ALL ON)
   target_precompile_headers(public_headers_alone PRIVATE <Eigen/Core> <toml++/toml.h>)
 endif()
