@@ -110,12 +110,12 @@ class Drawing(ProgramTest):
         self.assertNotIn("'", "".join(lines))
 
     def test_advice_names_features(self):
-        """The report advises to halve a feature in all limbs, not one of its errors: one with a share that is among the largest."""
+        """The report advises to halve a feature in all limbs, not one of its errors: the one with the largest share."""
         self.result("mc", 'kind = "monte-carlo"\ndraws = "per machine"\nsamples = 2000\nlimits = { tip_position = "0.12 mm" }').close()
         tables = json.loads(self.succeeds("show", "mc.h5", "--json"))["tables"]
         rows = next(table for table in tables if table["name"] == "features")["rows"]
-        # What makes most of the scatter does not always cost most yield.
-        first = [re.sub(r"_\d$", "", row["feature"]) for row in rows if row["share"] > 0.5 * rows[0]["share"]]
+        # Features whose shares are too close to the largest to be told apart.
+        first = [re.sub(r"_\d$", "", row["feature"]) for row in rows if row["share"] > 0.9 * rows[0]["share"]]
         self.succeeds("report", "mc.h5", "-o", "mc.html")
         advice = re.search(r"for one change alone, now [\d.]+ %: halving (\w+) ", (self.folder / "mc.html").read_text())
         self.assertIn(advice.group(1), first)
