@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <span>
 
 #include "engine/app/command_line.h"
 #include "engine/app/expected_time.h"
@@ -100,6 +101,19 @@ std::string cost_text(const Outlook& expected) {
       time_text(time), threads, time.least > kLongRun ? "; poesy run asks before it starts, or wants --yes" : "");
 }
 
+/// One line for each of the most frequent reasons for which candidate poses were rejected, and one for all others.
+std::string rejected_lines(std::span<const RejectedPoses> rejected) {
+  constexpr std::size_t kMost = 8;
+  std::string text;
+  for (const RejectedPoses& one : rejected.first(std::min(kMost, rejected.size()))) {
+    text += fmt::format("# rejected: {} candidate poses, {}\n", one.count, one.reason);
+  }
+  if (rejected.size() <= kMost) return text;
+  std::size_t rest = 0;
+  for (const RejectedPoses& one : rejected.subspan(kMost)) rest += one.count;
+  return text + fmt::format("# rejected: {} candidate poses, for {} further reasons\n", rest, rejected.size() - kMost);
+}
+
 int check(const std::string& path) {
   const Study study = read_study(path, registry(), StudyUse::run);
   const std::unique_ptr<Model> model = build_model(study.mechanism);
@@ -113,9 +127,7 @@ int check(const std::string& path) {
   for (const std::string& remark : model->remarks()) print("# " + remark + "\n");
   for (const std::string& unusual : model->unusual_errors()) print("# hint: " + asked_back(unusual) + "\n");
   print(trajectory_line(poses, study.model()));
-  for (const RejectedPoses& rejected : poses.rejected) {
-    print(fmt::format("# rejected: {} candidate poses, {}\n", rejected.count, rejected.reason));
-  }
+  print(rejected_lines(poses.rejected));
   return kDone;
 }
 

@@ -36,7 +36,8 @@ try:
     from poesy.__main__ import main
 except ImportError as missing:
     print(f"poesy: {sys.argv[3]}: is not drawn: {sys.executable} cannot import {missing.name or missing}; activate the "
-          "environment of ./quickstart python, or install python3-poesy, with python3-matplotlib", file=sys.stderr)
+          "environment of ./quickstart python, or name a Python that has both by --python or the variable POESY_PYTHON, "
+          "or install python3-poesy with python3-matplotlib", file=sys.stderr)
     sys.exit(2)
 sys.exit(main(["figure", *sys.argv[1:]]))
 )py";

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,12 @@ struct SketchedFrame {
 /// A small motion of the platform as a twist [omega; v] at the base's origin (rad, m).
 using SketchTwist = std::array<double, 6>;
 
+/// The axis about which an error turns, or along which it displaces.
+struct SketchedAxis {
+  SketchedFrame frame;  ///< a frame whose z is the axis
+  bool turns;           ///< true: rotation about the axis, perhaps with a displacement along it; false: displacement
+};
+
 /// An error in a picture. `after` and `before` count the joints of the limb from 1, from the base to the platform; 0
 /// means the base, and the number after the last joint means the platform.
 struct SketchedError {
@@ -53,6 +60,8 @@ struct SketchedError {
   /// have adapted, per SI unit of the error. Only one motion if it is the same for all limbs. Empty if the passive
   /// joints are in a singular configuration.
   std::vector<SketchTwist> motions;
+  /// For an error that is not about or along one axis of its frame, such as that of a feature; otherwise none.
+  std::optional<SketchedAxis> own = {};
 };
 
 /// A body at which limbs begin or end.

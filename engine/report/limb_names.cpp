@@ -2,19 +2,14 @@
 
 #include <map>
 #include <set>
-#include <string_view>
 
 namespace poesy {
-namespace {
 
-/// The name without the number of a limb at its end: "seat" of "seat_3". Any other name as it is.
 std::string_view stem_of(std::string_view name) {
   const std::size_t end = name.find_last_not_of("0123456789");
   const bool is_numbered = end != std::string_view::npos && end > 0 && end + 1 < name.size() && name[end] == '_';
   return is_numbered ? name.substr(0, end) : name;
 }
-
-}  // namespace
 
 void join_limbs(std::vector<std::string>& names) {
   std::map<std::string, std::set<std::string>> names_of_stem;

@@ -311,6 +311,26 @@ std::optional<Table> merits_table(std::span<const std::vector<Merit>> results) {
   return table;
 }
 
+/// A sentence if other figures of merit than the cost have the opposite verdict of the yield; otherwise empty.
+static std::string disagreement(const std::vector<Merit>& a, const std::vector<Merit>& b) {
+  const auto verdict_on = [&](const Merit& merit) {
+    const Merit* other = find(b, merit.what);
+    return other == nullptr ? Change::without_interval : change_of(merit, *other).verdict;
+  };
+  const Merit* yield = find(a, kYieldMerit);
+  if (yield == nullptr || verdict_on(*yield) > Change::worse) return {};
+  const Change opposite = verdict_on(*yield) == Change::better ? Change::worse : Change::better;
+  std::vector<std::string> names;
+  for (const Merit& merit : a) {
+    if (merit.what == kCostMerit || merit.what.starts_with(kLimitMerit)) continue;
+    if (verdict_on(merit) == opposite) names.push_back("the " + merit.what);
+  }
+  if (names.empty()) return {};
+  return fmt::format("By {} the other is better: the yield counts the machines within all limits, whatever the size of "
+                     "what is within or beyond.",
+                     fmt::join(names, " and "));
+}
+
 std::string merit_sentences(const std::vector<Merit>& a, const std::vector<Merit>& b, char letter) {
   std::vector<std::string> sentences;
   NoVerdicts no_verdicts;
@@ -333,6 +353,7 @@ std::string merit_sentences(const std::vector<Merit>& a, const std::vector<Merit
     first.push_back(fmt::format("No verdict, because {}: {}.", reason, fmt::join(values, "; ")));
   }
   sentences.insert(sentences.begin(), first.begin(), first.end());
+  if (std::string text = disagreement(a, b); !text.empty()) sentences.push_back(std::move(text));
   return fmt::format("{}", fmt::join(sentences, " "));
 }
 

@@ -30,6 +30,8 @@ struct StudyWords {
   /// [errors].
   std::vector<std::string> drawn = {};
   std::optional<std::uint64_t> seed = {};  ///< seed of the samples, if it differs from the seed in [run]
+  /// Name of the design that the picture of the mechanism shows; empty: the result has only one.
+  std::string design = {};
 };
 
 /// What a kind of study adds to the description of the method for a paper.

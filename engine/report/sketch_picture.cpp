@@ -339,11 +339,15 @@ class Drawing {
     text_ += "</g>\n";
   }
 
-  /// Draws the frame of an error. The axis of the error is thicker than the other two.
+  /// Draws the frame of an error. The axis of the error is thicker than the other two. Of an error's own frame only
+  /// this axis is drawn.
   void frame(const SketchedError& error) {
-    const SketchedFrame& frame = sketch_->frames[error.limb][error.frame];
+    const SketchedFrame& frame = error.own ? error.own->frame : sketch_->frames[error.limb][error.frame];
     text_ += "<g class=\"marked\">";
-    for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (error.own) {
+      add_line(frame.origin, plus(frame.origin, view_->metres(1.5 * kAxis), frame.axes[2]), "class=\"error-axis\"");
+    }
+    for (std::size_t axis = 0; axis < 3 && !error.own; ++axis) {
       const SketchVector end =
           plus(frame.origin, view_->metres(axis == error.axis ? 1.5 * kAxis : kAxis), frame.axes[axis]);
       add_line(frame.origin, end, axis == error.axis ? "class=\"error-axis\"" : "class=\"other-axis\"");

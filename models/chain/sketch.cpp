@@ -1,6 +1,8 @@
 #include "models/chain/sketch.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "models/chain/first_order.h"
@@ -42,6 +44,30 @@ std::size_t joint_of(const std::vector<SketchedJoint>& joints, std::size_t frame
       std::ranges::count_if(joints, [frame](const SketchedJoint& joint) { return joint.first <= frame; }));
 }
 
+/// SketchedError::own for the error with these terms. None if the terms are in several frames, or if it is not known
+/// about which point they turn.
+std::optional<SketchedAxis> own_axis(const Sketch& sketch, const ErrorTerms& terms, std::size_t frame) {
+  const ErrorTerm& first = terms.front();
+  lie::Screw<double> twist = lie::Screw<double>::Zero();
+  for (const ErrorTerm& term : terms) {
+    if (term.limb != first.limb || term.frame != first.frame) return std::nullopt;
+    twist[static_cast<Eigen::Index>(term.component)] += term.scale;
+  }
+  const Vector3 turn = twist.head<3>();
+  const Vector3 shift = twist.tail<3>();
+  const bool turns = turn.norm() > 0.0;
+  if (terms.size() == 1 || sketch.errors_at_joints || !(twist.norm() > 0.0)) return std::nullopt;
+  const SketchedFrame& at = sketch.frames[first.limb][frame];
+  Transform own;
+  for (Eigen::Index c = 0; c < 3; ++c) {
+    own.R.col(c) = Vector3(at.axes[static_cast<std::size_t>(c)].data());
+    own.p[c] = at.origin[static_cast<std::size_t>(c)];
+  }
+  if (turns) own.p += own.R * turn.cross(shift) / turn.squaredNorm();  // the point of the axis nearest to the frame
+  own.R = own.R * Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), turns ? turn : shift).toRotationMatrix();
+  return SketchedAxis{sketched(own), turns};
+}
+
 /// The motion of each limb's end by the error with these terms, or one motion if all are equal. displacements: [all
 /// joints].
 std::vector<SketchTwist> motions(const DeformationModel& model, FirstOrder& first_order, const ErrorTerms& terms,
@@ -69,8 +95,9 @@ void add_errors(Sketch& sketch, const DeformationModel& model, std::span<const d
   FirstOrder first_order(model.chain);
   const bool regular = first_order.prepare(displacements, nullptr);
   for (const ErrorTerms& terms : model.terms) {
-    sketch.errors.push_back(sketched_error(sketch, terms.front()));
-    if (regular) sketch.errors.back().motions = motions(model, first_order, terms, displacements);
+    SketchedError& error = sketch.errors.emplace_back(sketched_error(sketch, terms.front()));
+    error.own = own_axis(sketch, terms, error.frame);
+    if (regular) error.motions = motions(model, first_order, terms, displacements);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <numbers>
 #include <sstream>
 
 #include "models/registry.h"
@@ -13,11 +14,21 @@
 namespace poesy {
 namespace {
 
-CatalogEntry from_gallery(const std::string& name) {
-  const std::string path = POESY_TEST_DATA "/../../results/gallery/" + name + "/" + name + ".toml";
+CatalogEntry from_file(const std::string& path) {
   std::ostringstream text;
   text << std::ifstream(path).rdbuf();
   return registry().from_text(text.str(), path);
+}
+
+CatalogEntry from_gallery(const std::string& name) {
+  return from_file(POESY_TEST_DATA "/../../results/gallery/" + name + "/" + name + ".toml");
+}
+
+std::unique_ptr<Model> build_published(const CatalogEntry& entry) {
+  constexpr std::size_t kFirstOrder = 1;
+  std::vector<double> geometry;
+  for (const GeometryParameter& parameter : entry.description.geometry) geometry.push_back(parameter.published);
+  return entry.build(geometry, kFirstOrder);
 }
 
 /// The entry of a mechanism in the registry or, if there is none, in the gallery.
@@ -28,11 +39,7 @@ CatalogEntry entry_of(const std::string& name) {
 
 class Sketches : public testing::TestWithParam<const char*> {
  protected:
-  Sketches() : entry_(entry_of(GetParam())) {
-    constexpr std::size_t kFirstOrder = 1;
-    std::vector<double> geometry;
-    for (const GeometryParameter& parameter : entry_.description.geometry) geometry.push_back(parameter.published);
-    model_ = entry_.build(geometry, kFirstOrder);
+  Sketches() : entry_(entry_of(GetParam())), model_(build_published(entry_)) {
     const ModelDescription& description = model_->description();
     if (description.pose_lower.empty()) {
       pose_ = {-0.19, 0.2, -0.3};
@@ -114,6 +121,41 @@ TEST_P(Sketches, ErrorsAreWhereTheModelSays) {
     EXPECT_LE(error.before, sketch.limbs[error.limb].size() + 1);
     ASSERT_LT(error.frame, sketch.frames[error.limb].size());
   }
+}
+
+/// The faces of a linear Delta's drawing lift about lines in the base through their middles.
+TEST(SketchedErrors, OfAFeatureHaveTheAxisOfTheFeature) {
+  const CatalogEntry entry = from_file(POESY_TEST_DATA "/mechanisms/linear-delta-drawing.toml");
+  const std::unique_ptr<Model> model = build_published(entry);
+  const Sketch sketch = model->sketch({}).value();
+  std::size_t seen = 0;
+  for (std::size_t f = 0; f < sketch.errors.size(); ++f) {
+    const Factor& factor = model->description().factors[f];
+    if (!factor.name.starts_with("face_lift_")) continue;
+    ++seen;
+    const SketchedError& error = sketch.errors[f];
+    ASSERT_TRUE(error.own.has_value()) << factor.name;
+    EXPECT_TRUE(error.own->turns);
+    const SketchVector& axis = error.own->frame.axes[2];
+    EXPECT_NEAR(axis[2], 0.0, 1e-12);
+    const double turned = 2.0 * std::numbers::pi / 3.0 * static_cast<double>(error.limb);
+    const double lifted = factor.name.starts_with("face_lift_x") ? turned : turned + 0.5 * std::numbers::pi;
+    EXPECT_NEAR(axis[0] * std::cos(lifted) + axis[1] * std::sin(lifted), 0.0, 1e-12) << factor.name;
+    const auto feature = std::ranges::find_if(
+        sketch.features, [&](const SketchedFeature& one) { return one.name == "face" && one.limb == error.limb; });
+    ASSERT_NE(feature, sketch.features.end());
+    SketchVector middle{};
+    for (const SketchVector& corner : feature->outline) {
+      for (std::size_t c = 0; c < 3; ++c) middle[c] += corner[c] / static_cast<double>(feature->outline.size());
+    }
+    // the part of the face is the base, so its frame is that of the base
+    const SketchVector& p = error.own->frame.origin;
+    const double distance = std::hypot((middle[1] - p[1]) * axis[2] - (middle[2] - p[2]) * axis[1],
+                                       (middle[2] - p[2]) * axis[0] - (middle[0] - p[0]) * axis[2],
+                                       (middle[0] - p[0]) * axis[1] - (middle[1] - p[1]) * axis[0]);
+    EXPECT_NEAR(distance, 0.0, 1e-9) << factor.name;
+  }
+  EXPECT_EQ(seen, 6u);
 }
 
 TEST_P(Sketches, MotionsAreTheEvaluators) {

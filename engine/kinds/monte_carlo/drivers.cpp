@@ -360,7 +360,7 @@ void add_change_figure(const StoredResult& result, const YieldResult& yield, Sec
   };
   Bars bars{{},
             {{fmt::format("change of the yield if sigma grows by {}", percent_text(kStep)),
-              {{"%"}},
+              {{"percentage points"}},
               add("yield_change", changes.value),
               add("yield_change_low", changes.low),
               add("yield_change_high", changes.high)}},

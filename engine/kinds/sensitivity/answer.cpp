@@ -19,6 +19,7 @@
 #include "engine/kinds/sensitivity/result.h"
 #include "engine/kinds/sensitivity/tolerances.h"
 #include "engine/report/display.h"
+#include "engine/report/limb_names.h"
 #include "engine/report/tables.h"
 #include "engine/schema/settings.h"
 #include "engine/stats/tolerance.h"
@@ -43,14 +44,6 @@ constexpr double kHardly = 0.01;
 /// The advice is to calibrate an error, instead of holding it to a tight tolerance, if calibration can remove more than
 /// this share of its effect.
 constexpr double kCalibrated = 0.9;
-
-/// The name of an error without the number of its limb: "rod_left" for "rod_left_3". Names of the same error in
-/// different limbs (copies) differ only in this number. A name that does not end with a number is returned as a whole.
-std::string_view stem_of(std::string_view name) {
-  const std::size_t end = name.find_last_not_of("0123456789");
-  const bool has_number = end != std::string_view::npos && end > 0 && end + 1 < name.size() && name[end] == '_';
-  return has_number ? name.substr(0, end) : name;
-}
 
 bool has_number(std::string_view name) { return stem_of(name) != name; }
 

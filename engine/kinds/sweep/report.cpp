@@ -492,6 +492,10 @@ std::string values_of_key(const Result& found, std::size_t k) {
   return fmt::format("{}{}{}", fmt::join(values, ", "), unit.empty() ? "" : " ", unit);
 }
 
+StudyWords words(const StoredResult& result) {
+  return {.draws = true, .design = design_name(sweep_of(result), 0)};
+}
+
 MethodWords method(const StoredResult& result) {
   const Result& found = sweep_of(result);
   std::vector<std::string> keys;
@@ -527,7 +531,7 @@ const StudyKind kStudy{
 
 constinit const ReportKind kReport{.tally = tally,
                                    .tables = sweep_tables,
-                                   .words = [](const StoredResult&) { return StudyWords{.draws = true}; },
+                                   .words = words,
                                    .method = method,
                                    .answer = answer,
                                    .shown_cells = [](const StoredResult& result) { return shown_cells(result, 1); },

@@ -98,8 +98,8 @@ static void to_json(Json& json, const Scatter& scatter) {
 }
 
 static void to_json(Json& json, const PicturedError& error) {
-  json = {{"name", error.name},   {"words", error.words}, {"frame", error.frame}, {"axis", error.axis},
-          {"turns", error.turns}, {"size", error.size},   {"share", error.share}};
+  json = {{"name", error.name},   {"words", error.words},  {"frame", error.frame}, {"axis", error.axis},
+          {"turns", error.turns}, {"isOwn", error.is_own}, {"size", error.size},   {"share", error.share}};
 }
 
 static void to_json(Json& json, const Robot& robot) {

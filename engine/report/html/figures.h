@@ -150,6 +150,7 @@ struct PicturedError {
   std::size_t frame;  ///< index of the error's frame among the frames of all limbs
   std::size_t axis;   ///< axis of the frame: 0, 1 or 2 for x, y or z
   bool turns;         ///< true if the error is a rotation about the axis, false if it is a displacement along it
+  bool is_own;        ///< true if the frame is the error's own (SketchedError::own), of which only z is shown
   std::string size;   ///< size of the error in the figure, with the unit; empty if it is not known
   std::string share;  ///< share of the error (ErrorShares) as text with the unit; empty if there are no shares
 };

@@ -162,6 +162,8 @@ Answer answer(const ReportKind& kind, const StoredResult& result) {
 void add_mechanism(const ReportKind& kind, const ReportedResult& result, Page& page) {
   Section section("mechanism", "The mechanism");
   const ErrorShares shares = kind.error_shares == nullptr ? ErrorShares() : kind.error_shares(result.stored);
+  const std::string design = kind.words(result.stored).design;
+  if (has_pictures(result) && !design.empty()) section.paragraph("The picture shows the first design: " + design + ".");
   add_robot(result, shares, page, section);
   add_forces(kind, result, section);
   if (!result.stored.mechanism_text.empty()) section.folded_text("Its file", result.stored.mechanism_text);

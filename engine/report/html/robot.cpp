@@ -194,13 +194,19 @@ std::string title_of(const StoredResult& result, const RobotPose& pose) {
   return pose.pose ? pose_title(result, *pose.pose, pose.why) : "At " + pose.why;
 }
 
-/// Appends the numbers of all frames of a sketch, 12 for each frame: origin in mm, then the x, y and z axes.
-void add_frames(const Sketch& sketch, std::vector<double>& to) {
+/// Appends the 12 numbers of a frame: origin in mm, then the x, y and z axes.
+void add_frame(const SketchedFrame& frame, std::vector<double>& to) {
+  for (const double c : frame.origin) to.push_back(kMillimetres * c);
+  for (const SketchVector& axis : frame.axes) to.insert(to.end(), axis.begin(), axis.end());
+}
+
+/// Appends the numbers of the frames of all limbs, and of the errors' own frames.
+void add_frames(const Sketch& sketch, const std::vector<RobotError>& errors, std::vector<double>& to) {
   for (const auto& limb : sketch.frames) {
-    for (const SketchedFrame& frame : limb) {
-      for (const double c : frame.origin) to.push_back(kMillimetres * c);
-      for (const SketchVector& axis : frame.axes) to.insert(to.end(), axis.begin(), axis.end());
-    }
+    for (const SketchedFrame& frame : limb) add_frame(frame, to);
+  }
+  for (const RobotError& one : errors) {
+    if (const auto& own = sketch.errors[one.factor].own) add_frame(own->frame, to);
   }
 }
 
@@ -272,16 +278,19 @@ Robot robot_figure(const StoredResult& result, const Model& model, const std::ve
   std::vector<double> frames;
   for (const RobotPose& pose : poses) {
     robot.poses.push_back(title_of(result, pose));
-    add_frames(pose.sketch, frames);
+    add_frames(pose.sketch, errors, frames);
   }
   robot.frames = pool.add("robot_frames", frames);
   const Sketch& home = poses.front().sketch;
+  std::size_t next_own = 0;  // index of the next own frame of an error
+  for (const auto& limb : home.frames) next_own += limb.size();
   for (const RobotError& one : errors) {
     const Factor& factor = model.description().factors[one.factor];
     const SketchedError& error = home.errors[one.factor];
     const bool sized = result.factor_sigma.size() == result.factors.size();
-    robot.errors.push_back({factor.name, error_words(home, error, factor), frame_number(home, error), error.axis,
-                            error.turns,
+    robot.errors.push_back({factor.name, error_words(home, error, factor),
+                            error.own ? next_own++ : frame_number(home, error), error.own ? 2 : error.axis,
+                            error.own ? error.own->turns : error.turns, error.own.has_value(),
                             sized ? response_text(result.factors[one.at], result.factor_sigma[one.at]) : "",
                             std::isnan(one.share) || !shares.joined.empty() ? "" : percent_text(one.share)});
   }
@@ -375,7 +384,7 @@ std::string caption(const StoredResult& result, const Sketch& home, const std::v
                         shares.joined);
   }
   if (has_own_shares(errors, shares)) {
-    text += fmt::format(" The frame in a strong line is that of {}, the axis of that error the longest.",
+    text += fmt::format(" The strong line is the axis of {}, drawn in the frame to which that error belongs.",
                         result.factors[errors.front().at].name);
   }
   if (!readable_setting(result.study_text, "analysis", "calibrated").empty()) {

@@ -92,6 +92,24 @@ TEST(Merits, AreComparedWhereAllResultsHaveThem) {
   EXPECT_EQ(merit_sentences({exact(10.0)}, {exact(8.0)}), "B is better: the cost is 10 in A and 8 in B (-20 %).");
 }
 
+TEST(Merits, ThatContradictTheYieldAreNamed) {
+  const Merit yield{"yield", "%", 90.0, 89.0, 91.0, true};
+  const Merit better{"yield", "%", 95.0, 94.0, 96.0, true};
+  const auto rms = [](double value) { return Merit{"rms", "mm", value, 0.99 * value, 1.01 * value}; };
+  const auto cost = [](double value) {
+    return Merit{.what = std::string(kCostMerit), .value = value, .low = value, .high = value};
+  };
+  const std::string sentence =
+      " By the rms the other is better: the yield counts the machines within all limits, whatever the size of what is "
+      "within or beyond.";
+  EXPECT_TRUE(merit_sentences({yield, rms(1.0)}, {better, rms(2.0)}).ends_with(sentence));
+  EXPECT_TRUE(merit_sentences({better, rms(2.0)}, {yield, rms(1.0)}).ends_with(sentence));
+  EXPECT_EQ(merit_sentences({yield, rms(2.0)}, {better, rms(1.0)}).find("the other"), std::string::npos);
+  EXPECT_EQ(merit_sentences({yield, rms(1.0)}, {yield, rms(2.0)}).find("the other"), std::string::npos);
+  // a better yield may cost more
+  EXPECT_EQ(merit_sentences({yield, cost(1.0)}, {better, cost(2.0)}).find("the other"), std::string::npos);
+}
+
 std::vector<std::string> notes_on(const Merit& a, const Merit& b) {
   const Table table = merits_table(std::vector<std::vector<Merit>>{{a}, {b}}).value();
   return {table.notes.begin() + 1, table.notes.end()};

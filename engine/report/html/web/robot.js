@@ -62,7 +62,8 @@ function robotPart(tag, points, attributes, text) {
   return part;
 }
 
-/// The frame of an error with the error's axis emphasised. A rotation has an arrow around the axis.
+/// The frame of an error with the error's axis emphasised, or only this axis if the frame is the error's own. A rotation
+/// has an arrow around the axis.
 function markedFrame(data, k, error) {
   const count = values(data.frames).length / 12 / data.poses.length;
   const numbers = Array.from(row(values(data.frames), k * count + error.frame, 12));
@@ -71,9 +72,13 @@ function markedFrame(data, k, error) {
   const group = svgElement("g", { class: "marked" });
   axes.forEach((axis, a) => {
     const own = a === error.axis;
+    if (error.isOwn && !own) return;
+    const letter = "xyz"[a];
+    const name = shortened(error.name, NAME_WIDTH);
+    const label = own ? (error.isOwn ? name : `${letter}: ${name}`) : letter;
     const end = moved(origin, ((own ? 1.5 : 1) * FRAME_AXIS) / data.scale, axis);
     group.append(robotPart("line", [origin, end], { class: own ? "error-axis" : "other-axis" }));
-    group.append(robotPart("g", [end], { class: "error-name", "data-from": origin.join(",") }, own ? `${"xyz"[a]}: ${shortened(error.name, NAME_WIDTH)}` : "xyz"[a]));
+    group.append(robotPart("g", [end], { class: "error-name", "data-from": origin.join(",") }, label));
   });
   if (!error.turns) return group;
   const [u, v] = [axes[(error.axis + 1) % 3], axes[(error.axis + 2) % 3]];
