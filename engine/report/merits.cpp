@@ -326,9 +326,10 @@ static std::string disagreement(const std::vector<Merit>& a, const std::vector<M
     if (verdict_on(merit) == opposite) names.push_back("the " + merit.what);
   }
   if (names.empty()) return {};
-  return fmt::format("By {} the other is better: the yield counts the machines within all limits, whatever the size of "
-                     "what is within or beyond.",
-                     fmt::join(names, " and "));
+  return fmt::format(
+      "By {} the other is better: the yield counts the machines within all limits, whatever the size of "
+      "what is within or beyond.",
+      fmt::join(names, " and "));
 }
 
 std::string merit_sentences(const std::vector<Merit>& a, const std::vector<Merit>& b, char letter) {

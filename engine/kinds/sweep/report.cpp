@@ -492,9 +492,7 @@ std::string values_of_key(const Result& found, std::size_t k) {
   return fmt::format("{}{}{}", fmt::join(values, ", "), unit.empty() ? "" : " ", unit);
 }
 
-StudyWords words(const StoredResult& result) {
-  return {.draws = true, .design = design_name(sweep_of(result), 0)};
-}
+StudyWords words(const StoredResult& result) { return {.draws = true, .design = design_name(sweep_of(result), 0)}; }
 
 MethodWords method(const StoredResult& result) {
   const Result& found = sweep_of(result);

@@ -138,8 +138,8 @@ inline constexpr std::string_view kOutOfReach = "out of reach: ";
 bool some_out_of_reach(std::span<const RejectedPoses> rejected);
 
 /// A sentence that says how many of the examined poses of a workspace were rejected, and why. Empty if none was.
-/// candidates: SelectedPoses::candidates. If it is 0, the poses are on a boundary; then the sentence says whether it can
-/// be that of the mechanism's reach, or is empty.
+/// candidates: SelectedPoses::candidates. If it is 0, the poses are on a boundary; then the sentence says whether it
+/// can be that of the mechanism's reach, or is empty.
 std::string rejected_text(std::span<const RejectedPoses> rejected, std::size_t candidates);
 
 /// The poses that select_poses() found, and statistics of the poses that it rejected.
