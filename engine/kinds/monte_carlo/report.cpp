@@ -191,19 +191,39 @@ Table poses_table(const StoredResult& result) {
   return table;
 }
 
-/// The histogram of a response and its cumulative distribution, as lines over the edges of the bins. The first and the
-/// last bin are left out, because they extend to the smallest and the largest sample.
+/// The histogram of a response that a figure shows.
+struct ShownHistogram {
+  std::span<const double> edges;          ///< edges of the bins, SI
+  std::span<const std::uint64_t> counts;  ///< number of machines or samples in each bin
+  double all;                             ///< sum of `counts`
+  bool of_machines;  ///< true: largest magnitude of each machine over the poses; false: samples of all poses
+  bool is_signed;    ///< true if some values are negative
+};
+
+/// The machines' largest magnitudes if the study judges machines by these, otherwise the samples.
+ShownHistogram shown_histogram(const StoredResult& result, std::size_t r) {
+  const Result& found = monte_carlo_of(result);
+  const LimitVerdict* verdict = verdict_on(result, r);
+  if (found.machines && verdict != nullptr && verdict->limit.is_plain()) {
+    const MachineValues& largest = found.machines->largest;
+    return {largest.histogram_edges.row(r), largest.histogram_counts.row(r), static_cast<double>(largest.count(r)),
+            true, false};
+  }
+  return {found.histogram_edges.row(r), found.histogram_counts.row(r), static_cast<double>(found.overall_count(r)),
+          false, found.overall_min(r) < 0.0};
+}
+
+/// A histogram and its cumulative distribution, as lines over the edges of the bins. The first and the last bin are
+/// left out, because they extend to the smallest and the largest value.
 struct Outline {
   std::vector<double> x;        ///< lower and upper end of each bin, in the unit shown
   double width = 1.0;           ///< a round number, about the width of a bin, in the unit shown
-  std::vector<double> density;  ///< share of the samples per `width`
-  std::vector<double> below;    ///< share of the samples below x
+  std::vector<double> density;  ///< share of the values per `width`
+  std::vector<double> below;    ///< share of the values below x
 };
 
-Outline outline(const Result& found, std::size_t r, double unit) {
-  const std::span counts = found.histogram_counts.row(r);
-  const std::span edges = found.histogram_edges.row(r);
-  const double all = static_cast<double>(found.overall_count(r));
+Outline outline(const ShownHistogram& histogram, double unit) {
+  const auto& [edges, counts, all, of_machines, is_signed] = histogram;
   Outline drawn;
   double sum = static_cast<double>(counts.front()) / all;
   for (std::size_t b = 1; b + 1 < counts.size(); ++b) {
@@ -223,12 +243,14 @@ Outline outline(const Result& found, std::size_t r, double unit) {
   return drawn;
 }
 
-std::string distribution_caption(const StoredResult& result, std::size_t r) {
+std::string distribution_caption(const StoredResult& result, std::size_t r, bool of_machines) {
   const NamedUnit& response = result.responses[r];
   std::string text = fmt::format(
-      "{}: its distribution over the samples of all poses, and below it the share of the samples below a value. The "
-      "outermost 0.05 % on either side are not drawn.",
-      response.name);
+      "{}: {}, and below it the share of the {} below a value. The outermost 0.05 % on either side are not drawn.",
+      response.name,
+      of_machines ? "its largest magnitude over the poses, for each machine"
+                  : "its distribution over the samples of all poses",
+      of_machines ? "machines" : "samples");
   if (const LimitVerdict* verdict = verdict_on(result, r)) {
     const bool machines = result.verdicts->judge == Judge::yield;
     text += fmt::format(" {} of the {} are within the limit{}.",
@@ -238,22 +260,24 @@ std::string distribution_caption(const StoredResult& result, std::size_t r) {
   return text;
 }
 
-Lines distribution(const StoredResult& result, std::size_t r, ArrayPool& pool) {
+Lines distribution(const StoredResult& result, std::size_t r, const ShownHistogram& histogram, ArrayPool& pool) {
   const NamedUnit& response = result.responses[r];
   const std::string unit = unit_text(response);
-  const Outline drawn = outline(monte_carlo_of(result), r, display(response).si);
+  const std::string of = histogram.of_machines ? "machines" : "samples";
+  const std::string all = histogram.of_machines ? "machines" : "samples of all poses";
+  const Outline drawn = outline(histogram, display(response).si);
   const auto add = [&](std::string_view what, const std::vector<double>& values, double scale) {
     return pool.add(fmt::format("{}/{}", what, r), values, scale);
   };
   const ArrayName zero = add("histogram_zero", std::vector<double>(drawn.x.size(), 0.0), 1.0);
   const ArrayName density = add("histogram", drawn.density, 0.01);
-  return {.x = {response.name, unit, add("histogram_x", drawn.x, 1.0)},
-          .panels = {{fmt::format("share of the samples per {}{}", number_text(drawn.width),
-                                  unit.empty() ? "" : " " + unit),
-                      "%",
-                      {{"samples of all poses", density, zero, density}}},
-                     {"share of the samples below", "%", {{"samples of all poses", add("below", drawn.below, 0.01)}}}},
-          .marks = limit_marks(result, r, monte_carlo_of(result).overall_min(r) < 0.0)};
+  return {
+      .x = {response.name, unit, add("histogram_x", drawn.x, 1.0)},
+      .panels = {{fmt::format("share of the {} per {}{}", of, number_text(drawn.width), unit.empty() ? "" : " " + unit),
+                  "%",
+                  {{all, density, zero, density}}},
+                 {fmt::format("share of the {} below", of), "%", {{all, add("below", drawn.below, 0.01)}}}},
+      .marks = limit_marks(result, r, histogram.is_signed)};
 }
 
 void add_how_large(const StoredResult& result, std::span<const Table> tables, Page& page) {
@@ -264,9 +288,10 @@ void add_how_large(const StoredResult& result, std::span<const Table> tables, Pa
   if (found.machines && found.machines->calibration) section.table(tables, "calibration");
   if (found.machines) section.table(tables, "machines");
   for (const std::size_t r : headline_order(result)) {
-    if (found.overall_count(r) == 0) continue;
-    add_figure(page, section, fmt::format("distribution-{}", r), distribution(result, r, page.figures.pool),
-               distribution_caption(result, r));
+    const ShownHistogram histogram = shown_histogram(result, r);
+    if (histogram.all == 0.0) continue;
+    add_figure(page, section, fmt::format("distribution-{}", r), distribution(result, r, histogram, page.figures.pool),
+               distribution_caption(result, r, histogram.of_machines));
   }
   section.table(tables, "poses");
 }

@@ -327,6 +327,23 @@ TEST_F(HtmlReport, DrawsTheHistogramOfAMonteCarloResultWithItsLimit) {
   EXPECT_LT(html.find("Are the limits kept"), html.find("How large are the deviations"));
 }
 
+/// The area beyond the limit is then the share of the rejects.
+TEST_F(HtmlReport, DrawsTheLargestMagnitudesOfMachinesThatALimitJudges) {
+  example.write_machines(path);
+  const ReportedResult result = stored();
+  const std::string html = report(result);
+  const Json page = data(html);
+  const Json& figure = page["figures"]["distribution-1"];
+  EXPECT_TRUE(figure["panels"][0]["label"].get<std::string>().starts_with("share of the machines per "));
+  EXPECT_EQ(figure["panels"][1]["label"], "share of the machines below");
+  const monte_carlo::MachineValues& largest = monte_carlo::monte_carlo_of(result.stored).machines->largest;
+  const std::vector<float> below = array(page, figure["panels"][1]["series"][0]["value"]);
+  expect_shown(below.at(0), 100.0 * static_cast<double>(largest.histogram_counts(1, 0)) / 198.0);
+  EXPECT_EQ(figure["marks"].size(), 1u);
+  EXPECT_NE(html.find("75 % of the machines are within the limit at all poses"), std::string::npos);
+  EXPECT_EQ(page["figures"]["distribution-0"]["panels"][1]["label"], "share of the samples below");  // has no limit
+}
+
 TEST_F(HtmlReport, DrawsSobolIndicesWithTheirIntervals) {
   example.write_sobol(path);
   const ReportedResult result = stored();
