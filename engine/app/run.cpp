@@ -162,8 +162,10 @@ int explained_interruption(const ResumableRun& resumable) {
 
 /// Says how many candidate poses are not in the study, and why. The message is a warning if the mechanism does not
 /// reach some of them. Otherwise it is a note, because the study asked for their rejection.
-void say_rejected(const SelectedPoses& poses, bool quiet) {
-  const std::string text = rejected_text(poses.rejected, poses.candidates);
+void say_rejected(const Study& study, const SelectedPoses& poses, bool quiet) {
+  const std::string text = study.poses.select == PoseSelection::Select::boundary
+                               ? end_of_reach_text(poses.rejected)
+                               : rejected_text(poses.rejected, poses.candidates);
   if (text.empty()) return;
   const bool is_warning = some_out_of_reach(poses.rejected);
   if (is_warning || !quiet) say(is_warning ? Message::warning : Message::note, text);
@@ -195,7 +197,7 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   if (team != nullptr && !team->agree(text_of(identity), threads, &stop))
     return leave_before_the_start(*team, resumable);
   for (const std::string& doubt : all_doubts(study, *model, *poses)) say(Message::warning, doubt);
-  say_rejected(*poses, options.quiet);
+  say_rejected(study, *poses, options.quiet);
   for (const std::string& note : study_notes(study)) {
     if (!options.quiet) say(Message::note, note);
   }

@@ -183,6 +183,11 @@ std::string unsolved_note(const YieldVerdict& yield) {
 
 }  // namespace
 
+std::string rejected_text(const StoredResult& result) {
+  const bool is_boundary = readable_setting(result.study_text, "poses", "select") == "boundary";
+  return is_boundary ? end_of_reach_text(result.rejected) : rejected_text(result.rejected, result.candidates);
+}
+
 std::string summary_text(const StoredResult& result, const SolveTally& tally, std::size_t width) {
   const RunFacts& facts = result.facts;
   const double per_second =
@@ -193,7 +198,7 @@ std::string summary_text(const StoredResult& result, const SolveTally& tally, st
   text += prose_of(fmt::format("{} of {}: {}, poesy {}", result.kind, result.model,
                                counted(result.poses.size(), "pose", "poses"), result.poesy_version),
                    width);
-  if (const std::string rejected = rejected_text(result.rejected, result.candidates); !rejected.empty()) {
+  if (const std::string rejected = rejected_text(result); !rejected.empty()) {
     text += prose_of(rejected, width);
   }
   if (!result.metric.empty()) text += prose_of("metric: " + metric_text(result), width);

@@ -15,6 +15,10 @@
 
 namespace poesy {
 
+/// A sentence on candidate poses of the workspace that are not in the study, or on a boundary beyond the reach; empty
+/// if there is nothing to say.
+std::string rejected_text(const StoredResult& result);
+
 /// A few lines on what was run and how long it took, wrapped at `width` by prose_of(). tally: how the solves of the
 /// result ended.
 std::string summary_text(const StoredResult& result, const SolveTally& tally, std::size_t width);

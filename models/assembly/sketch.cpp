@@ -26,7 +26,7 @@ void add_errors(Sketch& sketch, const AssemblyModel& model, const Nominal& pose)
   const Balance effects = first_order.effect(alone);
   for (std::size_t f = 0; f < model.terms.size(); ++f) {
     const auto column = static_cast<Eigen::Index>(f);
-    sketch.errors.push_back(chain::sketched_error(sketch, model.terms[f].front()));
+    sketch.errors.push_back(chain::sketched_error(sketch, model.terms[f]));
     if (!first_order.is_regular()) continue;
     sketch.errors.back().motions =
         chain::sketched_motions(ends_of(model, pose, effects, column), alone.col(column).norm());

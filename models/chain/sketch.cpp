@@ -95,8 +95,7 @@ void add_errors(Sketch& sketch, const DeformationModel& model, std::span<const d
   FirstOrder first_order(model.chain);
   const bool regular = first_order.prepare(displacements, nullptr);
   for (const ErrorTerms& terms : model.terms) {
-    SketchedError& error = sketch.errors.emplace_back(sketched_error(sketch, terms.front()));
-    error.own = own_axis(sketch, terms, error.frame);
+    SketchedError& error = sketch.errors.emplace_back(sketched_error(sketch, terms));
     if (regular) error.motions = motions(model, first_order, terms, displacements);
   }
 }
@@ -132,16 +131,19 @@ std::vector<SketchTwist> sketched_motions(std::vector<lie::Screw<double>> motion
   return list;
 }
 
-SketchedError sketched_error(const Sketch& sketch, const ErrorTerm& term) {
+SketchedError sketched_error(const Sketch& sketch, const ErrorTerms& terms) {
+  const ErrorTerm& term = terms.front();
   const std::vector<SketchedJoint>& joints = sketch.limbs[term.limb];
   const std::size_t end = sketch.frames[term.limb].size() - 1;  // index of the frame of the limb's last body
+  const std::size_t frame = term.frame + 1 == end ? end : term.frame;
   return {.limb = term.limb,
-          .frame = term.frame + 1 == end ? end : term.frame,
+          .frame = frame,
           .axis = term.component % 3,
           .turns = term.component < 3,
           .after = joint_of(joints, term.frame, end),
           .before = joint_of(joints, term.frame + 1, end),
-          .motions = {}};
+          .motions = {},
+          .own = own_axis(sketch, terms, frame)};
 }
 
 void place(Sketch& sketch, const DeformationModel& model, std::span<const double> displacements) {

@@ -30,7 +30,8 @@ void place_limb(Sketch& sketch, const LimbFrames& frames, bool errors_at_joints)
 /// small compared with this norm.
 std::vector<SketchTwist> sketched_motions(std::vector<lie::Screw<double>> motions, double moves);
 
-/// The sketch of an error by its first term, without its motions. place_limb() must have added the limb of that term.
-SketchedError sketched_error(const Sketch& sketch, const ErrorTerm& term);
+/// The sketch of the error with these terms, without its motions. It is drawn in the frame of the first term.
+/// place_limb() must have added the limb of that term.
+SketchedError sketched_error(const Sketch& sketch, const ErrorTerms& terms);
 
 }  // namespace poesy::chain

@@ -72,7 +72,7 @@ void warn_of_unsolved_poses(const SolveTally& tally, Warnings& list) {
 }
 
 void warn_of_poses(const StoredResult& result, Warnings& list) {
-  if (const std::string rejected = rejected_text(result.rejected, result.candidates); !rejected.empty()) {
+  if (const std::string rejected = rejected_text(result); !rejected.empty()) {
     list.push_back(rejected + ".");
   }
   const auto ill = std::ranges::count_if(result.condition, [](double value) { return value > kIllConditioned; });

@@ -116,13 +116,15 @@ bool some_out_of_reach(std::span<const RejectedPoses> rejected) {
   return std::ranges::any_of(rejected, [](const RejectedPoses& one) { return one.reason.starts_with(kOutOfReach); });
 }
 
+std::string end_of_reach_text(std::span<const RejectedPoses> rejected) {
+  if (!some_out_of_reach(rejected)) return {};
+  return "the mechanism does not reach all of the stated workspace, so poses of this boundary can be at the end of its "
+         "reach, where small errors do much";
+}
+
 std::string rejected_text(std::span<const RejectedPoses> rejected, std::size_t candidates) {
-  constexpr const char* kEndOfReach =
-      "the mechanism does not reach all of the stated workspace, so poses of this boundary can be at the end of its "
-      "reach, where small errors do much";
   constexpr std::size_t kMost = 3;  // largest number of reasons in the sentence, without "out of reach"
-  if (rejected.empty()) return {};
-  if (candidates == 0) return some_out_of_reach(rejected) ? kEndOfReach : "";
+  if (rejected.empty() || candidates == 0) return {};
   std::size_t all = 0;
   // the exact reason differs from pose to pose, so only the number of these poses is stated
   std::size_t out_of_reach = 0;

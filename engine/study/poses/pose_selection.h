@@ -137,9 +137,12 @@ inline constexpr std::string_view kOutOfReach = "out of reach: ";
 /// Returns true if some of these poses were rejected because the mechanism cannot reach them.
 bool some_out_of_reach(std::span<const RejectedPoses> rejected);
 
+/// A sentence on the poses of a boundary, which says that they can be at the end of the mechanism's reach. Empty if it
+/// reaches all poses that the search examined.
+std::string end_of_reach_text(std::span<const RejectedPoses> rejected);
+
 /// A sentence that says how many of the examined poses of a workspace were rejected, and why. Empty if none was.
-/// candidates: SelectedPoses::candidates. If it is 0, the poses are on a boundary; then the sentence says whether it
-/// can be that of the mechanism's reach, or is empty.
+/// candidates: number of poses that the search examined; if it is 0 (not known), the sentence is empty.
 std::string rejected_text(std::span<const RejectedPoses> rejected, std::size_t candidates);
 
 /// The poses that select_poses() found, and statistics of the poses that it rejected.

@@ -200,13 +200,14 @@ TEST(RejectedPoses, AreToldByTheirNumberAndReason) {
   EXPECT_TRUE(some_out_of_reach(rejected));
   EXPECT_FALSE(some_out_of_reach(std::span(rejected).subspan(1, 1)));
   EXPECT_EQ(rejected_text({}, 30), "");
+  EXPECT_EQ(rejected_text(rejected, 0), "");
 }
 
 /// A boundary search has no number of candidates, and rejects poses in any workspace.
 TEST(RejectedPoses, OfABoundaryTellIfTheReachEndsInTheWorkspace) {
   const RejectedPoses limited{"q_2 above 20 deg", 4};
-  EXPECT_EQ(rejected_text(std::vector{limited}, 0), "");
-  EXPECT_EQ(rejected_text(std::vector{limited, RejectedPoses{"out of reach: too far", 2}}, 0),
+  EXPECT_EQ(end_of_reach_text(std::vector{limited}), "");
+  EXPECT_EQ(end_of_reach_text(std::vector{limited, RejectedPoses{"out of reach: too far", 2}}),
             "the mechanism does not reach all of the stated workspace, so poses of this boundary can be at the end of "
             "its reach, where small errors do much");
 }
