@@ -224,14 +224,20 @@ struct Outline {
 
 Outline outline(const ShownHistogram& histogram, double unit) {
   const auto& [edges, counts, all, of_machines, is_signed] = histogram;
+  // Unused bins, which are the last ones, have both edges at the largest value.
+  std::size_t end = 1;
+  while (end + 1 < counts.size() && edges[end] < edges[end + 1] && edges[end + 1] < edges.back()) ++end;
+  // Bins are joined until about as many are left as Rice's rule asks for.
+  const std::size_t most = std::max<std::size_t>(10, static_cast<std::size_t>(2.0 * std::cbrt(all)));
+  const std::size_t joined = (end - 1 + most - 1) / most;
   Outline drawn;
   double sum = static_cast<double>(counts.front()) / all;
-  for (std::size_t b = 1; b + 1 < counts.size(); ++b) {
-    // Unused bins have both edges at the largest value.
-    if (!(edges[b] < edges[b + 1]) || !(edges[b + 1] < edges.back())) continue;
-    const double share = static_cast<double>(counts[b]) / all;
-    const double density = share / ((edges[b + 1] - edges[b]) / unit);
-    drawn.x.insert(drawn.x.end(), {edges[b] / unit, edges[b + 1] / unit});
+  for (std::size_t b = 1; b < end; b += joined) {
+    const std::size_t next = std::min(b + joined, end);
+    const auto inside = counts.subspan(b, next - b);
+    const double share = static_cast<double>(std::accumulate(inside.begin(), inside.end(), std::uint64_t{0})) / all;
+    const double density = share / ((edges[next] - edges[b]) / unit);
+    drawn.x.insert(drawn.x.end(), {edges[b] / unit, edges[next] / unit});
     drawn.density.insert(drawn.density.end(), {density, density});
     drawn.below.insert(drawn.below.end(), {sum, sum + share});
     sum += share;
@@ -272,7 +278,8 @@ Lines distribution(const StoredResult& result, std::size_t r, const ShownHistogr
   const ArrayName zero = add("histogram_zero", std::vector<double>(drawn.x.size(), 0.0), 1.0);
   const ArrayName density = add("histogram", drawn.density, 0.01);
   return {
-      .x = {response.name, unit, add("histogram_x", drawn.x, 1.0)},
+      .x = {histogram.of_machines ? "largest " + response.name + " over the poses" : response.name, unit,
+            add("histogram_x", drawn.x, 1.0)},
       .panels = {{fmt::format("share of the {} per {}{}", of, number_text(drawn.width), unit.empty() ? "" : " " + unit),
                   "%",
                   {{all, density, zero, density}}},

@@ -78,7 +78,8 @@ function bars(figure, data) {
     const by = measure();
     if (!by) return d3.range(names.length);
     const value = at(by.value);
-    return ranked(names.map((_, p) => d3.max(series, (_, s) => Math.abs(value(s, p)))));
+    const deciding = data.sort === "first" ? [0] : d3.range(series.length);
+    return ranked(names.map((_, p) => d3.max(deciding, (s) => Math.abs(value(s, p)))));
   }
 
   /// [{name, unit, series, value, low, high}], one for each item that is shown and each series.

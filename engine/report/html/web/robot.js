@@ -73,12 +73,14 @@ function markedFrame(data, k, error) {
   axes.forEach((axis, a) => {
     const own = a === error.axis;
     if (error.isOwn && !own) return;
-    const letter = "xyz"[a];
-    const name = shortened(error.name, NAME_WIDTH);
-    const label = own ? (error.isOwn ? name : `${letter}: ${name}`) : letter;
+    const letter = error.isOwn ? "" : "xyz"[a];
     const end = moved(origin, ((own ? 1.5 : 1) * FRAME_AXIS) / data.scale, axis);
     group.append(robotPart("line", [origin, end], { class: own ? "error-axis" : "other-axis" }));
-    group.append(robotPart("g", [end], { class: "error-name", "data-from": origin.join(",") }, label));
+    const label = robotPart("g", [end], { class: "error-name", "data-from": origin.join(",") }, letter);
+    // On paper the pictures are too small for names.
+    const name = `${letter && ": "}${shortened(error.name, NAME_WIDTH)}`;
+    if (own) label.firstChild.append(svgElement("tspan", { class: "on-screen" }, name));
+    group.append(label);
   });
   if (!error.turns) return group;
   const [u, v] = [axes[(error.axis + 1) % 3], axes[(error.axis + 2) % 3]];

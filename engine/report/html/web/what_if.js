@@ -90,9 +90,12 @@ class SizedMachines {
   }
 }
 
-/// A share in percent, with two decimals near 0 and 100 %.
+/// A share in percent, with two decimals near 0 and 100 %. A tie goes to the even digit, as in the program's tables.
 function percent(share) {
-  return `${(100 * share).toFixed(Math.min(share, 1 - share) < 0.01 ? 2 : 1)}\u202f%`;
+  const digits = Math.min(share, 1 - share) < 0.01 ? 2 : 1;
+  const scaled = 100 * share * 10 ** digits;
+  const even = scaled % 2 === 0.5 ? scaled - 0.5 : scaled;
+  return `${(even / 10 ** digits).toFixed(digits)}\u202f%`;
 }
 
 function whatIf(figure, data) {
