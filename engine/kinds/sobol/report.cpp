@@ -224,6 +224,7 @@ Bars share_bars(const StoredResult& result, ArrayPool& pool, const std::string& 
             sobol_of(result).group_names};
   if (series.size() == 1) return bars;
   for (const BarSeries& one : series) bars.series.push_back(one.label);
+  bars.by_first = true;  // as the table
   return bars;
 }
 

@@ -67,7 +67,7 @@ static void to_json(Json& json, const Bars& bars) {
           {"choices", bars.choices},
           {"quantities", bars.quantities},
           {"items", bars.items},
-          {"sort", bars.sorted ? "value" : "none"}};
+          {"sort", bars.by_first ? "first" : "value"}};
   if (!bars.series.empty()) json["series"] = bars.series;
 }
 

@@ -53,7 +53,7 @@ struct Bars {
   std::vector<BarQuantity> quantities;   ///< quantities that bars may show
   std::vector<std::string> items;        ///< names of the items
   std::vector<std::string> series = {};  ///< names of the series; empty if there is only one
-  bool sorted = true;                    ///< true if the largest bar comes first
+  bool by_first = false;  ///< true: items are sorted by their bar of the first series, false: by their largest bar
 };
 
 /// An axis of a figure, with a value for each column, pose or point of the figure.

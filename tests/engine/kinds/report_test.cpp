@@ -336,6 +336,7 @@ TEST_F(HtmlReport, DrawsTheLargestMagnitudesOfMachinesThatALimitJudges) {
   const Json& figure = page["figures"]["distribution-1"];
   EXPECT_TRUE(figure["panels"][0]["label"].get<std::string>().starts_with("share of the machines per "));
   EXPECT_EQ(figure["panels"][1]["label"], "share of the machines below");
+  EXPECT_EQ(figure["x"]["label"], "largest " + result.stored.responses[1].name + " over the poses");
   const monte_carlo::MachineValues& largest = monte_carlo::monte_carlo_of(result.stored).machines->largest;
   const std::vector<float> below = array(page, figure["panels"][1]["series"][0]["value"]);
   expect_shown(below.at(0), 100.0 * static_cast<double>(largest.histogram_counts(1, 0)) / 198.0);
