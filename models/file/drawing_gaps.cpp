@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <utility>
 
 #include "engine/base/units.h"
@@ -348,6 +350,63 @@ std::vector<std::string> errors_without_effect(const Mechanism& mechanism) {
   if (names.empty()) return {};
   return {fmt::format("{} {} no effect to first order, and {} no other error", listed(names),
                       names.size() == 1 ? "has" : "have", names.size() == 1 ? "its part has" : "their parts have")};
+}
+
+namespace {
+
+/// The only direction in which displacements of a part have an effect; none if there are several, or none at all.
+std::optional<Vector3> only_direction(const Matrix& effect, double nothing) {
+  const Matrix without_effect = null_space(effect.rightCols<3>(), nothing);
+  if (without_effect.cols() != 2) return std::nullopt;
+  return complement(without_effect).col(0);
+}
+
+/// The displacements by the errors of a part, as columns in its axes.
+Matrix displacements_of(const Mechanism& mechanism, std::size_t limb, std::size_t frame) {
+  const std::vector<bool> all(mechanism.factors.size(), true);
+  return stated_columns(mechanism, all, limb, frame).bottomRows<3>();
+}
+
+/// A clause without its subject about an error that only displaces a part, obliquely to the only direction that has an
+/// effect, if the part has no error in this direction; otherwise empty.
+std::string oblique_displacement(const Mechanism& mechanism, const PartEffects& effects, double nothing,
+                                 std::size_t error) {
+  constexpr double kAlong = 0.9998;   // cosine of a degree
+  constexpr double kAcross = 0.0175;  // sine of a degree: an error across is meant to have no effect
+  const chain::ErrorTerm& first = mechanism.terms[error].front();
+  const lie::Screw<double> column = part_of_error(mechanism, error, first.limb, first.frame);
+  const std::optional<Vector3> only = only_direction(effects[first.limb][first.frame], nothing);
+  if (!only || column.head<3>().norm() > 0.0 || !(column.norm() > 0.0)) return {};
+  const double cosine = std::abs(only->dot(column.tail<3>().normalized()));
+  if (cosine > kAlong || cosine < kAcross) return {};
+  const Matrix spanned = complement(complement(displacements_of(mechanism, first.limb, first.frame)));
+  if ((spanned.transpose() * *only).norm() > 1.0 - kDependent) return {};
+  return fmt::format(
+      "{:.0f} deg off {}, the only direction of frame {} in which a displacement {} has an effect to first "
+      "order; state the length of a rod as a feature of kind distance",
+      std::acos(cosine) * 180.0 / std::numbers::pi, direction_words(*only), first.frame,
+      part_words(mechanism, mechanism.limbs[first.limb], first.frame));
+}
+
+}  // namespace
+
+std::vector<std::string> oblique_displacements(const Mechanism& mechanism) {
+  if (mechanism.first_named == mechanism.factors.size()) return {};
+  const PartEffects effects = part_effects(mechanism);
+  const double nothing = largest_rounding(mechanism, effects);
+  std::vector<std::pair<std::string, std::vector<std::string>>> said;  // words, and names of the errors
+  for (std::size_t f = mechanism.first_named; f < mechanism.factors.size(); ++f) {
+    const std::string words = oblique_displacement(mechanism, effects, nothing, f);
+    if (words.empty()) continue;
+    auto at = std::ranges::find(said, words, [](const auto& one) { return one.first; });
+    if (at == said.end()) at = said.insert(said.end(), {words, {}});
+    at->second.push_back(mechanism.factors[f].name);
+  }
+  std::vector<std::string> list;
+  for (const auto& [words, names] : said) {
+    list.push_back(fmt::format("{} {} {}", listed(names), names.size() == 1 ? "displaces" : "displace", words));
+  }
+  return list;
 }
 
 namespace {

@@ -22,6 +22,12 @@ std::vector<std::string> uncovered_directions(const Mechanism& mechanism);
 /// such error has an effect.
 std::vector<std::string> errors_without_effect(const Mechanism& mechanism);
 
+/// Clauses about errors with names of their own that displace a part obliquely to the only direction in which a
+/// displacement has an effect to first order, such as along a rod between balls, if no error of the part is in this
+/// direction: "rod_1 displaces 73 deg off ...". Such an error is often meant for the length of a rod, but only a part
+/// of it counts.
+std::vector<std::string> oblique_displacements(const Mechanism& mechanism);
+
 /// Clauses about doubtful zones: a location or an orientation without datums, and an orientation zone so wide that it
 /// has no effect beside the feature's location zone (drawing::widest_orientation()). There are also clauses about a
 /// distance whose nominal size is less than half or more than twice the length of its part in that direction, about an

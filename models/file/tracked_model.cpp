@@ -103,8 +103,8 @@ std::vector<std::string> TrackedModel::unusual_geometry() const {
 
 std::vector<std::string> TrackedModel::unusual_errors() const {
   std::vector<std::string> list;
-  for (const auto& find :
-       {unlike_limbs, doubtful_zones, doubtful_clearances, uncovered_directions, errors_without_effect}) {
+  for (const auto& find : {unlike_limbs, doubtful_zones, doubtful_clearances, uncovered_directions,
+                           errors_without_effect, oblique_displacements}) {
     for (std::string& found : find(mechanism_)) list.push_back(std::move(found));
   }
   return list;

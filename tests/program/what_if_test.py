@@ -3,6 +3,7 @@ machines; slopes, sizes and costs; cases without a prediction."""
 
 import base64
 import json
+import math
 import re
 
 import h5py
@@ -115,7 +116,8 @@ class WhatIf(ProgramTest):
     def changes(self):
         """The yields in per cent that the summary predicts for single changes."""
         text = (self.folder / "out.html").read_text()
-        said = re.search(r"Predicted yields for one change alone, now [\d.]+ %: (.*?)\.<", text)
+        said = re.search(r"Predicted yields for one change alone, now [\d.]+ %: (.*?)\. Each is uncertain by up to ([\d.]+) ", text)
+        self.uncertainty = float(said.group(2))
         return {name: float(value) for name, value in re.findall(r"([^,:]+?) ([\d.]+) %", said.group(1))}
 
     def test_the_summary_predicts_what_a_slider_shows(self):
@@ -126,6 +128,7 @@ class WhatIf(ProgramTest):
         said = self.changes()
         self.assertGreaterEqual(len(said), 3)
         self.assertEqual(list(said.values()), sorted(said.values(), reverse=True))
+        chances = []
         for change, value in said.items():
             name = change.strip().removeprefix("halving ")
             good = ~self.rejected(found, [0.5 if one == name else 1 for one in names])
@@ -134,6 +137,9 @@ class WhatIf(ProgramTest):
             slope = (both - (both + before) * (both + after)) / ((both + before) * (1 - both - before))
             expected = good.mean() + slope * (found["yield"][0] - was.mean())
             self.assertAlmostEqual(value, 100 * expected, delta=0.11, msg=change)  # shown to a tenth; arrays are floats
+            rest = (both + after) * (1 - both - after) - slope**2 * (both + before) * (1 - both - before)
+            chances.append(100 * found["quantile"] * math.sqrt(rest / (len(was) + 4)))
+        self.assertAlmostEqual(self.uncertainty / max(chances), 1, delta=0.06)  # shown with two digits
 
     def test_the_summary_names_errors_whose_means_reject_machines(self):
         """Predicted without the mean: the yield of the run without it, with the same draws."""

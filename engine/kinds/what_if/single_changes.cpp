@@ -28,19 +28,22 @@ std::vector<bool> good_machines(const TriedMachines& tried, const DecidingPoses&
   return good;
 }
 
-/// The share of good machines after a change, by regression on the known yield. The sliders of the page compute the
-/// same: one is added to each of the four counts of machines that are good before, after, at both or never.
-double yield_after(const std::vector<bool>& now, const std::vector<bool>& then, double yield) {
+/// The share of good machines after a change, by regression on the known yield, with its standard error by chance. The
+/// sliders of the page compute the same: one is added to each of the four counts of machines that are good before,
+/// after, at both or never.
+PredictedChange after(std::string change, const std::vector<bool>& now, const std::vector<bool>& then, double yield) {
   const auto machines = static_cast<double>(now.size());
   const auto before = static_cast<double>(std::ranges::count(now, true));
-  const auto after = static_cast<double>(std::ranges::count(then, true));
+  const auto left = static_cast<double>(std::ranges::count(then, true));
   double both = 0.0;
   for (std::size_t b = 0; b < now.size(); ++b) both += now[b] && then[b] ? 1.0 : 0.0;
   const double all = machines + 4.0;
   const double was = (before + 2.0) / all;
-  const double is = (after + 2.0) / all;
+  const double is = (left + 2.0) / all;
   const double slope = ((both + 1.0) / all - was * is) / (was * (1.0 - was));
-  return std::clamp((after + slope * (machines * yield - before)) / machines, 0.0, 1.0);
+  const double rest = is * (1.0 - is) - slope * slope * was * (1.0 - was);
+  return {std::move(change), std::clamp((left + slope * (machines * yield - before)) / machines, 0.0, 1.0),
+          std::sqrt(std::max(0.0, rest) / all)};
 }
 
 /// The vectors less their means over the machines that are solved.
@@ -92,7 +95,7 @@ std::vector<PredictedChange> single_changes(std::span<const SizedErrors> errors,
   const std::vector<bool> now = good([&](std::size_t k) { return tried.rows[k]; });
   std::vector<PredictedChange> changes;
   const auto add = [&](const std::string& change, const auto& at_pose) {
-    changes.push_back({change, yield_after(now, good(at_pose), yield)});
+    changes.push_back(after(change, now, good(at_pose), yield));
   };
   for (const auto& [name, slots] : slots_by_name(errors)) {
     std::vector<double> sizes(machines.deviations().length<axis::Factor>(), 1.0);
@@ -106,16 +109,21 @@ std::vector<PredictedChange> single_changes(std::span<const SizedErrors> errors,
   return changes;
 }
 
-std::string changes_text(std::span<const PredictedChange> changes, double yield) {
+std::string changes_text(std::span<const PredictedChange> changes, double yield, double quantile) {
   constexpr std::size_t kMost = 4;
   constexpr double kNotable = 0.001;  // a machine among as many as the prediction uses
   std::string text;
+  double chance = 0.0;
   for (const PredictedChange& one : changes.first(std::min(kMost, changes.size()))) {
     if (!(one.yield > yield + kNotable)) break;
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", one.change, percent_text(one.yield));
+    chance = std::max(chance, 100.0 * quantile * one.standard_error);
   }
   if (text.empty()) return {};
-  return fmt::format("Predicted yields for one change alone, now {}: {}.", percent_text(yield), text);
+  return fmt::format(
+      "Predicted yields for one change alone, now {}: {}. Each is uncertain by up to {:.2g} percentage "
+      "points; changes that differ by less are not told apart.",
+      percent_text(yield), text, chance);
 }
 
 }  // namespace poesy

@@ -13,8 +13,9 @@ namespace poesy {
 
 /// A change of a study, and the yield that is predicted for it.
 struct PredictedChange {
-  std::string change;  ///< such as "halving seat_*"
-  double yield;        ///< 0 to 1
+  std::string change;     ///< such as "halving seat_*"
+  double yield;           ///< 0 to 1
+  double standard_error;  ///< of `yield` by chance, if the yield of the study is exact
 };
 
 /// The yields that are predicted if one change alone is made: errors of one name, in all limbs, have half their size,
@@ -24,8 +25,9 @@ std::vector<PredictedChange> single_changes(std::span<const SizedErrors> errors,
                                             double yield, const TriedMachines& tried, const WhatIfMachines& machines,
                                             const DecidingPoses& deciding);
 
-/// The changes that raise the yield most: "Predicted yields for one change alone, now 78.4 %: halving elbow 89.3 %,
-/// ...". Empty if no change raises the yield.
-std::string changes_text(std::span<const PredictedChange> changes, double yield);
+/// The changes that raise the yield most, and how uncertain they are: "Predicted yields for one change alone, now 78.4
+/// %: halving elbow 89.3 %, ...". Empty if no change raises the yield. quantile: half the width of an interval, in
+/// standard errors.
+std::string changes_text(std::span<const PredictedChange> changes, double yield, double quantile);
 
 }  // namespace poesy

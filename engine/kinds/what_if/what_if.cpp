@@ -257,7 +257,8 @@ std::optional<YieldPrediction> what_if(const JudgedMachines& judged, ArrayPool& 
   std::vector<double> means;
   for (const Distribution& one : plan.distributions()) means.push_back(one.mean());
   const auto changes = single_changes(judged.errors, means, judged.yield, tried, machines, deciding);
-  return YieldPrediction{std::move(made), changes_text(changes, judged.yield)};
+  std::string text = changes_text(changes, judged.yield, made.quantile);
+  return YieldPrediction{std::move(made), std::move(text)};
 }
 
 std::string add_what_if(const JudgedMachines& judged, std::string_view after, Page& page) {

@@ -74,6 +74,50 @@ TEST(DrawingGaps, AnErrorWithoutEffectIsAskedAbout) {
   EXPECT_EQ(found(error("leg", "2", "delta_x") + error("along", "2", "delta_z")), Clauses{});
 }
 
+/// A hexapod with arms: its rods have balls at both ends, behind which no axis lies along the rod.
+constexpr const char* kServoHexapod = R"(
+format = "poesy-mechanism"
+version = 1
+name = "servo"
+[platform]
+origin = [0, 0, "200 mm"]
+coordinates = ["x", "y", "z", "rx", "ry", "rz"]
+workspace = { x = ["-20 mm", "20 mm"], y = ["-20 mm", "20 mm"], z = ["185 mm", "215 mm"], rx = ["-5 deg", "5 deg"], ry = ["-5 deg", "5 deg"], rz = ["-5 deg", "5 deg"] }
+[[limb]]
+name = "left"
+copies = { count = 3, about = "z" }
+joints = [
+  { name = "q", type = "R", at = ["130 mm", "20 mm", 0], axis = "x", actuated = true },
+  { name = "B", type = "S", at = ["130 mm", "80 mm", 0] },
+  { name = "C", type = "S", at = ["70 mm", "70 mm", "200 mm"] } ]
+[[limb]]
+name = "right"
+copies = { count = 3, about = "z" }
+joints = [
+  { name = "q", type = "R", at = ["130 mm", "-20 mm", 0], axis = "x", actuated = true },
+  { name = "B", type = "S", at = ["130 mm", "-80 mm", 0] },
+  { name = "C", type = "S", at = ["70 mm", "-70 mm", "200 mm"] } ]
+)";
+
+TEST(DrawingGaps, AnErrorObliqueToARodIsAskedAbout) {
+  const auto found = [](const std::string& frame, const std::string& component, const std::string& more = "") {
+    return oblique_displacements(read(std::string(kServoHexapod) + "\n[[error]]\nname = \"rod\"\nlimb = [1]\nframe = " +
+                                      frame + "\ncomponent = " + component + "\n" + more));
+  };
+  // the rod runs along (-60, -10, 200), x behind B along (-60, -10, 0): atan(200 / 60.8) = 73 deg
+  const Clauses oblique = found("\"B\"", "\"delta_x\"");
+  ASSERT_EQ(oblique.size(), 1U);
+  EXPECT_TRUE(oblique[0].starts_with("rod displaces 73 deg off (")) << oblique[0];
+  EXPECT_TRUE(
+      oblique[0].ends_with(", the only direction of frame 4 in which a displacement between B and C has an effect "
+                           "to first order; state the length of a rod as a feature of kind distance"))
+      << oblique[0];
+  EXPECT_EQ(found("5", "\"delta_z\""), Clauses{});                                  // along the rod
+  EXPECT_EQ(found("5", "\"delta_x\""), Clauses{});                                  // across the rod
+  EXPECT_EQ(found("\"B\"", "[\"delta_x\", \"delta_y\", \"delta_z\"]"), Clauses{});  // all directions
+  EXPECT_EQ(found("\"q\"", "\"delta_x\""), Clauses{});  // an arm, which acts in many directions
+}
+
 TEST(DrawingGaps, ASizeFarFromTheLengthOfItsPartIsDoubtful) {
   const auto doubts = [](const std::string& size) {
     return doubtful_zones(read(replaced(
