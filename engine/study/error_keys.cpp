@@ -771,8 +771,8 @@ const StudyRows& errors_keys() {
   static const StudyRows keys{
       .paths = {"errors"},
       .meaning = "How the errors that vary scatter, by their dimension.",
-      .rows = {usual_row<Dimension::length>("Distribution of every length."),
-               usual_row<Dimension::angle>("Distribution of every angle."), relative_row(), zones_row(),
+      .rows = {usual_row<Dimension::length>("Distribution of every length; the default is a unit, so state your own."),
+               usual_row<Dimension::angle>("Distribution of every angle; the default is a unit, so state your own."), relative_row(), zones_row(),
                StudyRow{.name = "override",
                         .value = {.type = "table"},
                         .usual = "none",
