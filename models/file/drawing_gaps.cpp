@@ -383,7 +383,7 @@ std::string oblique_displacement(const Mechanism& mechanism, const PartEffects& 
   if ((spanned.transpose() * *only).norm() > 1.0 - kDependent) return {};
   return fmt::format(
       "{:.0f} deg off {}, the only direction of frame {} in which a displacement {} has an effect to first "
-      "order; state the length of a rod as a feature of kind distance",
+      "order (a feature of kind distance states the length of a rod)",
       std::acos(cosine) * 180.0 / std::numbers::pi, direction_words(*only), first.frame,
       part_words(mechanism, mechanism.limbs[first.limb], first.frame));
 }

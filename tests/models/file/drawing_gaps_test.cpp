@@ -110,7 +110,7 @@ TEST(DrawingGaps, AnErrorObliqueToARodIsAskedAbout) {
   EXPECT_TRUE(oblique[0].starts_with("rod displaces 73 deg off (")) << oblique[0];
   EXPECT_TRUE(
       oblique[0].ends_with(", the only direction of frame 4 in which a displacement between B and C has an effect "
-                           "to first order; state the length of a rod as a feature of kind distance"))
+                           "to first order (a feature of kind distance states the length of a rod)"))
       << oblique[0];
   EXPECT_EQ(found("5", "\"delta_z\""), Clauses{});                                  // along the rod
   EXPECT_EQ(found("5", "\"delta_x\""), Clauses{});                                  // across the rod
