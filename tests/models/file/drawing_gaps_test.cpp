@@ -107,7 +107,7 @@ TEST(DrawingGaps, AnErrorObliqueToARodIsAskedAbout) {
   // the rod runs along (-60, -10, 200), x behind B along (-60, -10, 0): atan(200 / 60.8) = 73 deg
   const Clauses oblique = found("\"B\"", "\"delta_x\"");
   ASSERT_EQ(oblique.size(), 1U);
-  EXPECT_TRUE(oblique[0].starts_with("rod displaces 73 deg off (")) << oblique[0];
+  EXPECT_TRUE(oblique[0].starts_with("rod_1 displaces 73 deg off (")) << oblique[0];
   EXPECT_TRUE(
       oblique[0].ends_with(", the only direction of frame 4 in which a displacement between B and C has an effect "
                            "to first order (a feature of kind distance states the length of a rod)"))
