@@ -31,9 +31,8 @@ h5::File open_poesy_file(const std::string& path);
 /// The advice for a damaged file.
 inline constexpr const char* kDamagedRemedy = "take another copy, or run the study again";
 
-inline constexpr unsigned long kTrialSeconds = 5;  ///< s, processor time of the child in trial_read()
-inline constexpr unsigned long kTrialWaitSeconds =
-    60;  ///< s, wall time of the child in trial_read(), for a busy machine
+inline constexpr unsigned long kTrialSeconds = 5;       ///< s, processor time of the child in trial_read()
+inline constexpr unsigned long kTrialWaitSeconds = 60;  ///< s, wall time of that child, on a busy machine
 /// Bytes of memory that the child in trial_read() may take in addition to those of the program.
 inline constexpr unsigned long kTrialBytes = 1UL << 28U;
 

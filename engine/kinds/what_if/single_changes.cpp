@@ -33,16 +33,16 @@ std::vector<bool> good_machines(const TriedMachines& tried, const DecidingPoses&
 /// after, at both or never.
 PredictedChange after(std::string change, const std::vector<bool>& now, const std::vector<bool>& then, double yield) {
   const auto machines = static_cast<double>(now.size());
-  const auto before = static_cast<double>(std::ranges::count(now, true));
-  const auto left = static_cast<double>(std::ranges::count(then, true));
+  const auto good_now = static_cast<double>(std::ranges::count(now, true));
+  const auto good_then = static_cast<double>(std::ranges::count(then, true));
   double both = 0.0;
   for (std::size_t b = 0; b < now.size(); ++b) both += now[b] && then[b] ? 1.0 : 0.0;
   const double all = machines + 4.0;
-  const double was = (before + 2.0) / all;
-  const double is = (left + 2.0) / all;
+  const double was = (good_now + 2.0) / all;
+  const double is = (good_then + 2.0) / all;
   const double slope = ((both + 1.0) / all - was * is) / (was * (1.0 - was));
   const double rest = is * (1.0 - is) - slope * slope * was * (1.0 - was);
-  return {std::move(change), std::clamp((left + slope * (machines * yield - before)) / machines, 0.0, 1.0),
+  return {std::move(change), std::clamp((good_then + slope * (machines * yield - good_now)) / machines, 0.0, 1.0),
           std::sqrt(std::max(0.0, rest) / all)};
 }
 

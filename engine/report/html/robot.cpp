@@ -384,7 +384,7 @@ std::string caption(const StoredResult& result, const Sketch& home, const std::v
                         shares.joined);
   }
   if (has_own_shares(errors, shares)) {
-    text += fmt::format(" The strong line is the axis of {}, drawn in the frame to which that error belongs.",
+    text += fmt::format(" The strong line is the axis of {}; a displacement is drawn at the frame to which it belongs.",
                         result.factors[errors.front().at].name);
   }
   if (!readable_setting(result.study_text, "analysis", "calibrated").empty()) {
