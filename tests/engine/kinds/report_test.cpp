@@ -328,7 +328,7 @@ TEST_F(HtmlReport, DrawsTheHistogramOfAMonteCarloResultWithItsLimit) {
 }
 
 /// The area beyond the limit is then the share of the rejects.
-TEST_F(HtmlReport, DrawsTheLargestMagnitudesOfMachinesThatALimitJudges) {
+TEST_F(HtmlReport, DrawsTheLargestOfMachinesThatALimitJudges) {
   example.write_machines(path);
   const ReportedResult result = stored();
   const std::string html = report(result);
