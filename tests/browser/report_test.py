@@ -28,7 +28,7 @@ WEB = Path(os.environ["POESY_WEB"])
 SHOTS = os.environ.get("POESY_SCREENSHOTS")
 WIDTHS = (1400, 400)
 PAPER = 680  # width of A4 without margins (CSS pixels)
-MOST_BYTES = 3_000_000
+MOST_BYTES = 2_000_000
 MOST_SECONDS = 30  # ten times the required time, because the machine may be busy
 
 
