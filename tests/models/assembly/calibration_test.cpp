@@ -68,7 +68,8 @@ class Calibration : public testing::TestWithParam<std::tuple<const char*, Metric
 /// The errors are some nm and 1e-6 deg, so small that the correction has no effect of second order.
 TEST_P(Calibration, Holds) {
   const auto [name, metric] = GetParam();
-  const auto& one = *std::ranges::find_if(cases(), [&](const Case& each) { return std::string(each.name) == name; });
+  const auto& one =
+      *std::ranges::find_if(cases(), [&sought = name](const Case& each) { return std::string(each.name) == sought; });
   AssemblyModel model = made(one.text(), metric);
   model.assembly.load = {};
   const Driven driven(model, one.pose);
