@@ -311,7 +311,8 @@ std::optional<Table> merits_table(std::span<const std::vector<Merit>> results) {
   return table;
 }
 
-/// A sentence if other figures of merit than the cost have the opposite verdict of the yield; otherwise empty.
+/// A sentence that names the figures of merit, other than costs, whose verdict is the opposite of that on the yield.
+/// Empty if there are none.
 static std::string disagreement(const std::vector<Merit>& a, const std::vector<Merit>& b) {
   const auto verdict_on = [&](const Merit& merit) {
     const Merit* other = find(b, merit.what);
@@ -327,8 +328,7 @@ static std::string disagreement(const std::vector<Merit>& a, const std::vector<M
   }
   if (names.empty()) return {};
   return fmt::format(
-      "By {} the other is better: the yield counts the machines within all limits, whatever the size of "
-      "what is within or beyond.",
+      "By {} the other is better: the yield counts machines that keep all limits, and not how far they are from them.",
       fmt::join(names, " and "));
 }
 

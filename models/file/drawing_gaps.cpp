@@ -276,18 +276,20 @@ std::string limbs_words(const Mechanism& mechanism, const std::vector<std::size_
   return "limbs " + listed(labels);
 }
 
-/// A clause, and the indices of the limbs for which it holds.
-struct SaidByLimbs {
+/// A clause, and what it is about: the indices of limbs, or the names of errors.
+template <class Subject>
+struct Said {
   std::string words;
-  std::vector<std::size_t> limbs;
+  std::vector<Subject> of;
 };
 
-void say(std::vector<SaidByLimbs>& list, std::string words, std::size_t limb) {
-  const auto known = std::ranges::find(list, words, &SaidByLimbs::words);
+template <class Subject>
+void say(std::vector<Said<Subject>>& list, std::string words, Subject subject) {
+  const auto known = std::ranges::find(list, words, &Said<Subject>::words);
   if (known == list.end()) {
-    list.push_back({std::move(words), {limb}});
+    list.push_back({std::move(words), {std::move(subject)}});
   } else {
-    known->limbs.push_back(limb);
+    known->of.push_back(std::move(subject));
   }
 }
 
@@ -304,7 +306,7 @@ std::vector<std::string> uncovered_directions(const Mechanism& mechanism) {
   const PartEffects effects = part_effects(mechanism);
   const double nothing = largest_rounding(mechanism, effects);
   const std::vector<bool> is_stated = stated_errors(mechanism);
-  std::vector<SaidByLimbs> said;
+  std::vector<Said<std::size_t>> said;
   for (std::size_t i = 0; i < effects.size(); ++i) {
     for (std::size_t k = 0; k < effects[i].size(); ++k) {
       const std::string part = part_words(mechanism, mechanism.limbs[i], k);
@@ -318,7 +320,7 @@ std::vector<std::string> uncovered_directions(const Mechanism& mechanism) {
     }
   }
   std::vector<std::string> list;
-  for (const SaidByLimbs& one : said) list.push_back(limbs_words(mechanism, one.limbs) + ", " + one.words);
+  for (const auto& [words, limbs] : said) list.push_back(limbs_words(mechanism, limbs) + ", " + words);
   return list;
 }
 
@@ -367,12 +369,13 @@ Matrix displacements_of(const Mechanism& mechanism, std::size_t limb, std::size_
   return stated_columns(mechanism, all, limb, frame).bottomRows<3>();
 }
 
-/// A clause without its subject about an error that only displaces a part, obliquely to the only direction that has an
-/// effect, if the part has no error in this direction; otherwise empty.
+/// The rest of the clause "rod_1 displaces ...", for an error that displaces its part, without a rotation, obliquely to
+/// the only direction that has an effect. Empty for any other error, and if the errors of the part together reach this
+/// direction.
 std::string oblique_displacement(const Mechanism& mechanism, const PartEffects& effects, double nothing,
                                  std::size_t error) {
   constexpr double kAlong = 0.9998;   // cosine of a degree
-  constexpr double kAcross = 0.0175;  // sine of a degree: an error across is meant to have no effect
+  constexpr double kAcross = 0.0175;  // sine of a degree; errors_without_effect() asks about such errors
   const chain::ErrorTerm& first = mechanism.terms[error].front();
   const lie::Screw<double> column = part_of_error(mechanism, error, first.limb, first.frame);
   const std::optional<Vector3> only = only_direction(effects[first.limb][first.frame], nothing);
@@ -394,13 +397,10 @@ std::vector<std::string> oblique_displacements(const Mechanism& mechanism) {
   if (mechanism.first_named == mechanism.factors.size()) return {};
   const PartEffects effects = part_effects(mechanism);
   const double nothing = largest_rounding(mechanism, effects);
-  std::vector<std::pair<std::string, std::vector<std::string>>> said;  // words, and names of the errors
+  std::vector<Said<std::string>> said;
   for (std::size_t f = mechanism.first_named; f < mechanism.factors.size(); ++f) {
-    const std::string words = oblique_displacement(mechanism, effects, nothing, f);
-    if (words.empty()) continue;
-    auto at = std::ranges::find(said, words, [](const auto& one) { return one.first; });
-    if (at == said.end()) at = said.insert(said.end(), {words, {}});
-    at->second.push_back(mechanism.factors[f].name);
+    std::string words = oblique_displacement(mechanism, effects, nothing, f);
+    if (!words.empty()) say(said, std::move(words), mechanism.factors[f].name);
   }
   std::vector<std::string> list;
   for (const auto& [words, names] : said) {

@@ -116,7 +116,8 @@ class WhatIf(ProgramTest):
     def changes(self):
         """The yields in per cent that the summary predicts for single changes."""
         text = (self.folder / "out.html").read_text()
-        said = re.search(r"Predicted yields for one change alone, now [\d.]+ %: (.*?)\. Each is uncertain by up to ([\d.]+) ", text)
+        said = re.search(r"Predicted yields for one change alone, now [\d.]+ %: (.*?)\. "
+                         r"Each is uncertain by up to ([\d.]+) ", text)
         self.uncertainty = float(said.group(2))
         return {name: float(value) for name, value in re.findall(r"([^,:]+?) ([\d.]+) %", said.group(1))}
 

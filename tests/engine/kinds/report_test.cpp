@@ -327,7 +327,7 @@ TEST_F(HtmlReport, DrawsTheHistogramOfAMonteCarloResultWithItsLimit) {
   EXPECT_LT(html.find("Are the limits kept"), html.find("How large are the deviations"));
 }
 
-/// The area beyond the limit is then the share of the rejects.
+/// The share of the machines beyond the mark of the limit is then the share that the limit rejects.
 TEST_F(HtmlReport, DrawsTheLargestOfMachinesThatALimitJudges) {
   example.write_machines(path);
   const ReportedResult result = stored();

@@ -100,8 +100,8 @@ TEST(Merits, ThatContradictTheYieldAreNamed) {
     return Merit{.what = std::string(kCostMerit), .value = value, .low = value, .high = value};
   };
   const std::string sentence =
-      " By the rms the other is better: the yield counts the machines within all limits, whatever the size of what is "
-      "within or beyond.";
+      " By the rms the other is better: the yield counts machines that keep all limits, and not how far they are from "
+      "them.";
   EXPECT_TRUE(merit_sentences({yield, rms(1.0)}, {better, rms(2.0)}).ends_with(sentence));
   EXPECT_TRUE(merit_sentences({better, rms(2.0)}, {yield, rms(1.0)}).ends_with(sentence));
   EXPECT_EQ(merit_sentences({yield, rms(2.0)}, {better, rms(1.0)}).find("the other"), std::string::npos);

@@ -100,9 +100,9 @@ joints = [
 )";
 
 TEST(DrawingGaps, AnErrorObliqueToARodIsAskedAbout) {
-  const auto found = [](const std::string& frame, const std::string& component, const std::string& more = "") {
+  const auto found = [](const std::string& frame, const std::string& component) {
     return oblique_displacements(read(std::string(kServoHexapod) + "\n[[error]]\nname = \"rod\"\nlimb = [1]\nframe = " +
-                                      frame + "\ncomponent = " + component + "\n" + more));
+                                      frame + "\ncomponent = " + component + "\n"));
   };
   // the rod runs along (-60, -10, 200), x behind B along (-60, -10, 0): atan(200 / 60.8) = 73 deg
   const Clauses oblique = found("\"B\"", "\"delta_x\"");
