@@ -91,5 +91,25 @@ class PoseSearch(ProgramTest):
         self.assertEqual(self.poesy("run", "study.toml", "--quiet").stderr, b"")
         self.assertNotIn("not in this study", self.succeeds("show", "study.h5"))
 
+    def test_a_boundary_beyond_the_reach_is_told(self):
+        said = "the mechanism does not reach all of the stated workspace"
+        beyond = REACH.replace('"grid", count = { x = 3, y = 3, phi = 1 }', '"boundary", count = 40')
+        self.write("study.toml", beyond)
+        done = self.poesy("run", "study.toml", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(f"poesy: warning: {said}", done.stderr.decode())
+        self.assertIn(said, " ".join(self.succeeds("show", "study.h5").split()))
+        self.succeeds("report", "study.h5", "-o", "study.html")
+        self.assertIn(said, (self.folder / "study.html").read_text(encoding="utf-8"))
+        rejected = re.findall(r"# rejected: (\d+) candidate poses, (.*)", self.succeeds("check", "study.toml"))
+        all_rejected = json.loads(self.succeeds("show", "study.h5", "--json"))["rejected_poses"]
+        self.assertGreater(len(all_rejected), 9)
+        self.assertEqual(len(rejected), 9)
+        self.assertEqual(rejected[-1][1], f"for {len(all_rejected) - 8} further reasons")
+        self.assertEqual(sum(int(count) for count, _ in rejected), sum(one["count"] for one in all_rejected))
+        self.write("study.toml", beyond.replace("0.1 m", "0.02 m"))
+        self.assertEqual(self.poesy("run", "study.toml", "--quiet").stderr, b"")
+        self.assertNotIn(said, self.succeeds("show", "study.h5"))
+
 
 main()
