@@ -11,7 +11,9 @@
 
 With --suite bookworm or --suite trixie the root has this release of Debian, otherwise the release of this machine. The
 root is made by mmdebstrap from this machine's sources of Debian packages, with a clone of the commit that is checked
-out here, and is removed at the end. The script must be started as root. Only its own processes see what it mounts.
+out here, at the same path as here, and is removed at the end. With --keep-build its build folder is moved to this
+repository, if that has none, and ./quickstart here goes on with it. The script must be started as root. Only its own
+processes see what it mounts.
 """
 
 import argparse
@@ -26,7 +28,8 @@ import time
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-CLONE = "root/poesy"  # path in the root
+CLONE = str(REPOSITORY).lstrip("/")  # path in the root: the same as here, so that a build there can go on here
+BUILD = "build/release"
 ERRORS = 25  # number of errors of the published study
 MOST_PACKAGES = {"bookworm": 155, "trixie": 195}  # upper limits; 143 and 184 are needed
 FOR_TESTS_ALONE = {"libgtest-dev", "libbenchmark-dev", "npm", "nodejs", "octave", "octave-dev", "chromium", "doxygen", "pandoc",
@@ -267,7 +270,7 @@ def check_program(root, output):
         if not file.is_file() or file.stat().st_size == 0:
             raise Fault(f"{name} is missing or empty")
     for name in RESULTS:
-        run([*ENTER, root, f"/{CLONE}/build/release/bin/poesy", "verify", f"/{CLONE}/{name}"])
+        run([*ENTER, root, f"/{CLONE}/{BUILD}/bin/poesy", "verify", f"/{CLONE}/{name}"])
 
 
 def check_python(root, command, output, clock):
@@ -314,7 +317,18 @@ def obey(wanted, command, suite, root, before, clock):
     return len(after - before), output
 
 
-def try_out(words, suite, work):
+def keep_build(root):
+    """Moves the build folder, with the times of its files, to this repository and its owner, unless there is one."""
+    mine = REPOSITORY / BUILD
+    if mine.exists():
+        print(f"\n{mine} is kept; that of the root is dropped")
+        return
+    mine.parent.mkdir(exist_ok=True)
+    run(["mv", root / CLONE / BUILD, mine])
+    run(["chown", "--recursive", f"--reference={REPOSITORY}", mine.parent])
+
+
+def try_out(words, suite, kept, work):
     root, clock, done, outputs = work / "root", Clock(), {}, ""
     readme = (REPOSITORY / "README.md").read_text(encoding="utf-8")
     commands_to_try = {command_of(readme, wanted): wanted for wanted in words}
@@ -326,6 +340,8 @@ def try_out(words, suite, work):
     for command, wanted in commands_to_try.items():
         done[command], output = obey(wanted, command, suite, root, before, clock)
         outputs += output
+    if kept:
+        keep_build(root)
     summary(clock, done, outputs)
 
 
@@ -346,10 +362,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("words", nargs="*", choices=["program", "test", "python"], default="program", metavar="COMMAND")
     parser.add_argument("--suite", choices=["bookworm", "trixie"])
+    parser.add_argument("--keep-build", action="store_true")
     asked = parser.parse_args()
+    suite = asked.suite or own_suite()
+    if asked.keep_build and suite != own_suite():
+        parser.error(f"--keep-build: the compiler of {suite} is not that of this machine")
     words = asked.words if isinstance(asked.words, list) else [asked.words]
     in_work_folder("bare_root", lambda work: try_out(["" if word == "program" else word for word in words],
-                                                     asked.suite or own_suite(), work))
+                                                     suite, asked.keep_build, work))
 
 
 if __name__ == "__main__":
