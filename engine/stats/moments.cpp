@@ -136,12 +136,6 @@ double root_mean_square(std::span<const double> values) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-double student_quantile(double freedom, double conf_level) {
-  POESY_EXPECTS(conf_level > 0.0 && conf_level < 1.0);
-  const boost::math::students_t student(freedom);
-  return boost::math::quantile(boost::math::complement(student, 0.5 * (1.0 - conf_level)));
-}
-
 double two_sided_normal_quantile(double conf_level) {
   POESY_EXPECTS(conf_level > 0.0 && conf_level < 1.0);
   return std::numbers::sqrt2 * boost::math::erf_inv(conf_level);

@@ -58,14 +58,11 @@ double root_mean_square(double mean, double standard_deviation, std::uint64_t co
 /// The root mean square of these values; NaN without values.
 double root_mean_square(std::span<const double> values);
 
-/// The t for which Student's distribution with these degrees of freedom is within +-t with the probability conf_level.
-/// Preconditions: freedom > 0, 0 < conf_level < 1.
-double student_quantile(double freedom, double conf_level);
-
 /// The z for which a standard normal is within +-z with the probability conf_level: 1.96 for 0.95. Precondition: 0 <
 /// conf_level < 1.
 double two_sided_normal_quantile(double conf_level);
-/// The same number as student_quantile(), with the same preconditions.
+/// The t for which Student's distribution with these degrees of freedom is within +-t with the probability conf_level.
+/// Preconditions: freedom > 0, 0 < conf_level < 1.
 double two_sided_student_quantile(double freedom, double conf_level);
 
 /// Student's interval for a mean: mean +- t(n - 1) s / sqrt(n). NaN at both ends below two samples.

@@ -70,7 +70,7 @@ Estimate RatioSums::estimate(double conf_level) const {
   if (count_ < 2 || !(w_ > 0.0)) return {value(), {kNaN, kNaN}};
   if (xx_ == xw_ * value() && xw_ == ww_ * value()) return {value(), {value(), value()}};  // there is no scatter
   const auto n = static_cast<double>(count_);
-  const double z = student_quantile(n - 1.0, conf_level);
+  const double z = two_sided_student_quantile(n - 1.0, conf_level);
   // z^2 times the variances of the means of x and w, and z^2 times their covariance. The unit is the mean of w, so that
   // small numbers do not underflow.
   const double mean = w_ / n;

@@ -20,7 +20,7 @@ void check_own_name(const StudyValue& value, const std::string& own, std::string
   const bool is_plain = std::ranges::all_of(own, [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
   });
-  if (!is_plain || (own.front() >= '0' && own.front() <= '9')) {
+  if (own.empty() || !is_plain || (own.front() >= '0' && own.front() <= '9')) {
     value.fail(fmt::format("is the {} '{}', whose name cannot be used in expressions", what, printable(own)),
                "take letters, digits and _, and begin with a letter");
   }

@@ -96,6 +96,7 @@ KEYS = [
     (FIT, 'fit = ["radius"]\ncombinations.radius = { "foot_x_*" = 0 }', "8:", "is 0"),
     (FIT, 'fit = ["foot_x_1"]\ncombinations.foot_x_1 = { foot_x_2 = 1 }', "8:", "the name of the error 'foot_x_1'"),
     (FIT, 'fit = ["a-b"]\ncombinations.a-b = { foot_x_2 = 1 }', "8:", "cannot be used in expressions"),
+    (FIT, 'fit = ["a"]\ncombinations."" = { foot_x_2 = 1 }', "8:", "cannot be used in expressions"),
     (FIT, 'fit = ["r", "r2"]\ncombinations.r = { foot_x_1 = 1 }\ncombinations.r2 = { foot_x_1 = 2 }', "7:",
      "combinations 'r' and 'r2' are the same direction"),
     (FIT, 'fit = ["foot_x_1", "foot_x_2", "r"]\ncombinations.r = { foot_x_1 = 1, foot_x_2 = 1 }', "7:",
