@@ -32,7 +32,6 @@ struct Mechanism {
   std::vector<double> pose;  ///< pose (SI); empty: the middle of the workspace
 };
 
-/// One case of the benchmark.
 struct Case {
   Mechanism mechanism;
   std::size_t fidelity;  ///< index in ModelDescription::fidelities

@@ -41,7 +41,7 @@ void units(benchmark::State& state, const MakeStudy& make, SolverOptions::Method
   report(state, counts);
 }
 
-/// Measures solves in which all errors vary at once, in blocks of 1000 samples, each block at another pose. Every
+/// Measures solves in which all errors vary at once, in blocks of 1000 samples, each block at a different pose. Every
 /// thread solves the same blocks. The time of drawing is not included. scale: factor of the study's errors.
 void all_errors(benchmark::State& state, const MakeStudy& make, const std::string& isa, double scale) {
   constexpr std::size_t kBlocks = 8;  // number of different blocks of samples, used in turn

@@ -13,7 +13,8 @@ namespace {
 using namespace poesy;
 
 constexpr std::size_t kPoses = 20;
-// Number of blocks of samples; the second cache of a core holds them, as it holds samples just drawn.
+// Number of blocks of samples. They fit in the second-level cache of a core, where samples that were just drawn would
+// also be.
 constexpr std::size_t kBlocks = 2;
 constexpr std::size_t kSamples = 1000;
 
@@ -55,7 +56,7 @@ std::unique_ptr<Evaluator> evaluator_of(const Case& which, const ModelDescriptio
 }
 
 /// Measures solves of blocks of samples with normal errors of 0.1 mm and 0.1 mrad (standard deviations), each block at
-/// another pose.
+/// a different pose.
 void solves(benchmark::State& state, const Case& which) {
   const ModelDescription& description = find(registry(), "3-prs")->description;
   const std::unique_ptr<Evaluator> evaluator = evaluator_of(which, description);

@@ -187,7 +187,8 @@ int solve(const EvaluateOptions& options, const Evaluated& all, const std::strin
                {"the result is kept; see /limits in " + path, "the result is kept: see /evaluate/status in " + path});
 }
 
-/// Throws InputError if a response is relative to the previous pose, because with --paired each pose has other errors.
+/// Throws InputError if a response is relative to the previous pose, because with --paired the errors differ from pose
+/// to pose.
 void refuse_pose_before(const Study& study) {
   for (const OwnResponse& own : study.mechanism.responses) {
     if (!own.relative_to || !own.relative_to->is_previous()) continue;

@@ -16,7 +16,7 @@ struct Launch {
 
 /// Finds out from environment variables how this process was launched. mpirun of Open MPI sets OMPI_COMM_WORLD_*. srun
 /// --mpi=pmix sets PMIX_RANK, and Slurm sets SLURM_* for every process of a job. Launchers of other MPIs set PMI_*.
-/// None if these variables do not tell rank and size.
+/// None if these variables do not state the rank and the number of processes.
 std::optional<Launch> find_launch();
 
 /// Returns true if this process is the first one that a launcher started, or the only one.
@@ -32,7 +32,7 @@ class LaunchedRanks : public Ranks {
 };
 
 /// Connects this process to the other ranks. The destructor of the returned object waits for all ranks and ends MPI.
-/// Throws InputError if this program was built without MPI, or for another MPI than that of the launcher.
+/// Throws InputError if this program was built without MPI, or for an MPI that differs from the launcher's.
 std::unique_ptr<LaunchedRanks> connect_ranks(const Launch& launch);
 
 }  // namespace poesy::app

@@ -116,7 +116,7 @@ void warn_of_other_program(const ReplayOptions& options, const StoredResult& res
                   options.result, result.poesy_version, result.git_commit, poesy_version(), git_commit()));
 }
 
-/// Warns if the result lists this sample as failed with another status than the replay found.
+/// Warns if the result lists this sample as failed, but with a status that differs from that of the replay.
 void warn_of_difference(const ReplayOptions& options, const StoredResult& result, const ReplayedSample& replayed) {
   for (const Failure& failure : result.failures) {
     if (result.varied[failure.slot] != options.factor || failure.pose.value != options.pose ||

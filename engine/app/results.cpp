@@ -56,7 +56,7 @@ std::string cpu_name() {
   return "unknown";
 }
 
-/// Advice on how fewer samples may fail. It is about the units of the poses if these are far outside the workspace,
+/// Advice on how to make fewer samples fail. It is about the units of the poses if these are far outside the workspace,
 /// about clearances and errors if most failed machines cannot be assembled, and otherwise about solver options and the
 /// sizes of errors. The solver's method is named only for the metric "published" and for mechanisms without a metric,
 /// because it matters only for these.
@@ -109,7 +109,7 @@ ExitCode judge_failures(const Study& study, const PoseSet& poses, const SolveCou
   return kTooManyNotConverged;
 }
 
-/// What tells more about a yield that is undecided.
+/// Advice on how to decide an undecided yield, as a clause.
 std::string more_machines(const Study& study) {
   if (study.errors.machines) return "give more machines, as rows of errors.machines";
   return "take more samples, whose number may grow with --resume if the checkpoint is kept";
@@ -306,13 +306,13 @@ void check_files_beside(const std::string& result, std::span<const std::string> 
 
 namespace {
 
-/// Notes on limits far from what is judged (ReportKind::far_limits).
+/// Notes on limits far from the judged values (ReportKind::far_limits).
 std::vector<std::string> far_limits_of(const Job& job, StudyResult& result) {
   const auto notes = kind_of(job.study).report.far_limits;
   if (notes == nullptr) return {};
   StoredResult seen = described(job.study, job.model, job.poses);
   seen.verdicts = result.verdicts;
-  seen.found = std::move(result.found);  // lent: a copy of a large result takes memory
+  seen.found = std::move(result.found);  // moved back below, because a copy would take memory
   std::vector<std::string> list = notes(seen);
   result.found = std::move(seen.found);
   return list;

@@ -60,7 +60,7 @@ struct RunOutcome {
   RunFacts facts;
   std::optional<LimitVerdicts> verdicts = std::nullopt;
   std::vector<std::string> row_names = {};   ///< names of the rows of errors in `verdicts`
-  std::vector<std::string> far_limits = {};  ///< notes on limits far from what is judged (ReportKind::far_limits)
+  std::vector<std::string> far_limits = {};  ///< notes on limits far from the judged values (ReportKind::far_limits)
   /// Path of the study that was written beside the result (check_files_beside()); empty: none.
   std::string confirming = {};
 };
@@ -106,7 +106,7 @@ void warn_of_mechanism(const Study& study, const Model& model);
 /// What looks like a mistake, one line each: in the mechanism, in the sizes of drawn errors (size_doubts()), in zones
 /// that are not used (zones_doubt()), in poses with a singular pose between them (sides_doubt()), in the numbers of the
 /// tables that the study names and the ranges of coordinates in which it seeks poses (doubts_of()), and in limits on
-/// points for which the correction of the actuators is not best (correction_doubt()).
+/// points far from those for which the correction of the actuators is best (correction_doubt()).
 std::vector<std::string> all_doubts(const Study& study, const Model& model, const SelectedPoses& poses);
 
 /// Notes on the study, one line each: how its machines are calibrated, which errors are constant, and the note of the

@@ -13,7 +13,7 @@ namespace poesy::app {
 /// of the result, for the message.
 std::string choose_response(const std::string& wanted, const std::string& path, StoredResult& result);
 
-/// The name of the response to show, as choose_response() returns it, without a change of the result.
+/// The name of the response to show, as choose_response() returns it, but without changing the result.
 std::string response_of(const std::string& wanted, const std::string& path, const StoredResult& result);
 
 }  // namespace poesy::app

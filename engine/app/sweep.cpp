@@ -236,8 +236,8 @@ int interrupted(const ResumableRun& resumable) {
   return kInterrupted;
 }
 
-/// Throws InputError if a swept key is a parameter of the mechanism's geometry that lacks "geometry." or a unit. model:
-/// the study's mechanism.
+/// Throws InputError if a swept key names a parameter of the mechanism's geometry, but lacks "geometry." in front of
+/// the name, or a unit after the values. model: the study's mechanism.
 void check_geometry_key(const std::string& set, const sweep::SweptKey& swept, const ModelDescription& model) {
   constexpr std::string_view kTable = "mechanism.geometry.";
   const bool is_whole = swept.key.starts_with(kTable);

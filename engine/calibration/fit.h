@@ -89,7 +89,7 @@ struct FitProblem {
 /// The estimate and its diagnostics.
 struct FitResult {
   bool converged = false;   ///< true if the iteration ended because a step was short enough
-  bool solved = true;       ///< false if a machine of the iteration was not solved; then no other member is valid
+  bool solved = true;       ///< false if the start or the derivatives cannot be solved; then no other member is valid
   std::size_t steps = 0;    ///< number of steps of the iteration
   Vector theta;             ///< [numbers] fitted numbers of the errors, SI
   Vector phi;               ///< [places] fitted numbers of the frame and the target, SI

@@ -29,7 +29,8 @@ double integral(const F& f, double from, double to) {
 
 /// The probability that both ends of an axis are within a distance k of their nominal places. Each coordinate of an end
 /// has standard deviation 1. correlation: between a coordinate of one end and the same coordinate of the other end. If
-/// the displacement of one end is given, that of the other end is normal about `correlation` times the given one.
+/// the displacement of one end is given, that of the other end is normal with the mean `correlation` times the given
+/// displacement.
 double ends_inside(double k, double correlation, bool one_direction) {
   const double rest = std::sqrt(std::max(0.0, (1.0 - correlation) * (1.0 + correlation)));
   if (rest < 1e-6) return one_direction ? in_interval(k) : in_disc(k);

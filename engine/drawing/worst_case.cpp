@@ -113,7 +113,7 @@ struct Ends {
 };
 
 /// The displacements of the two ends of an axis with the largest value of far . a + near . b (scalar products). Each
-/// end stays in a disc of this radius, and the two displacements differ by at most `lean`; both in m.
+/// end stays in a disc of this radius (m), and the two displacements differ by at most `lean` (m).
 Ends extreme_ends(const Across& a, const Across& b, double radius, double lean) {
   const Ends free{radius * unit(a), radius * unit(b)};
   if ((free.far - free.near).length() <= lean) return free;

@@ -32,9 +32,9 @@ struct ZoneSquares {
   double worst;
 };
 
-/// The mean squares of a feature's effect under this scatter. sigmas: scatter_sigmas(feature, scatter), an argument
-/// because it may take a numerical integration, which callers do once. squares: for each error of the feature, the sum
-/// of the squared slopes of the components of the response.
+/// The mean squares of a feature's effect under this scatter. sigmas: scatter_sigmas(feature, scatter). It is an
+/// argument so that callers do its numerical integration only once. squares: for each error of the feature, the sum of
+/// the squared slopes of the components of the response.
 ZoneSquares zone_squares(const Feature& feature, const ZoneScatter& scatter, const FeatureSigmas& sigmas,
                          const OfErrors& squares);
 

@@ -84,7 +84,7 @@ std::pair<double, double> rectangle_at(const Density& tilt, double lift) {
 
 /// Integrates over all directions of a tilt of this length; for a rectangle, `length` is the lift of the extreme
 /// points. Returns the integral of the density, and the integral of the density times the sum of the squared tilt
-/// errors, both without the same constant factor, which cancels in cut().
+/// errors. Both integrals lack the same constant factor, which cancels in cut().
 std::pair<double, double> tilt_at(const Feature& feature, const Density& tilt, double length) {
   if (feature.kind == FeatureKind::rectangle) return rectangle_at(tilt, length);
   const double weight = (feature.one_direction ? 1.0 : length) * tilt.at(length);

@@ -28,7 +28,7 @@ class CalibratingEvaluator final : public Evaluator {
   MachineCalibrator calibrator_;
   std::unique_ptr<calibration::CorrectedEvaluator> corrected_;
   Matrix errors_;  ///< [all errors x samples] errors of the last block of samples, SI; `corrected_` has the controllers
-                   ///< of these machines
+                   ///< of the machines with these errors
 };
 
 }  // namespace

@@ -10,17 +10,17 @@
 
 namespace poesy {
 
-/// Makes a function that computes the errors of the coordinates that the study's controller commands, from the
-/// displacement of the platform. tip_x, tip_y and tip_z are coordinates of the tool point, unless the mechanism has
-/// pose coordinates of these names. A pose coordinate is recognised by its values: they must equal a component of the
+/// Makes a function that computes, from the displacement of the platform, the errors of the coordinates that the
+/// study's controller commands. tip_x, tip_y and tip_z are coordinates of the tool point, unless the mechanism has pose
+/// coordinates of these names. A pose coordinate is recognised by its values: they must equal a component of the
 /// platform's position, or an angle of its rotation, at every test pose. Throws InputError if a coordinate is not
 /// recognised, or if the drives do not match: their number differs from that of the pose coordinates, or the drives of
 /// one motor do not move together.
 calibration::CoordinateError commanded_coordinates(const Study& study, const Model& model,
                                                    const calibration::ExactMachine& machine, const PoseSet& poses);
 
-/// The drives of a study, with their units. If the study names motors, a motor is listed by its first joint; otherwise
-/// the drives are those of the model.
+/// The drives of a study, with their units. If the study names motors, each motor has the name and the unit of its
+/// first joint; otherwise the drives are those of the model.
 std::vector<NamedUnit> drives_of(const Study& study);
 
 /// [drives] The displacement (rad or m) of each drive of the perfect mechanism at pose `drive_at`, minus its

@@ -172,8 +172,8 @@ DrawingResult described(const StudyRun& run, const std::vector<Feature>& feature
   return made;
 }
 
-/// [features] The variances (SI) of each feature's errors, if the study states a distribution for one of them, such as
-/// a measured one, that is not the one of its zone. Empty for a feature whose errors all scatter as the zones state.
+/// [features] The variances (SI) of each feature's errors, if one of them has another distribution than its zone
+/// states, such as a measured distribution. Empty for a feature whose errors all scatter as the zones state.
 std::vector<OfErrors> own_variances(const Study& study, const std::vector<Feature>& features) {
   const auto by_zones = distributions_by_zones(study);
   std::vector<OfErrors> variances(features.size());
@@ -263,7 +263,8 @@ bool correlates(const Study& study, const std::vector<Feature>& features) {
   });
 }
 
-/// Sets to NaN what is correct only for independent errors: shares, and what all features do together.
+/// Sets to NaN the numbers that are correct only for independent errors: the shares of features, and the root mean
+/// squares of all features together.
 void remove_sums(DrawingResult& result) {
   std::ranges::fill(result.share.all(), kNaN);
   std::ranges::fill(result.rms.all(), kNaN);

@@ -85,7 +85,8 @@ struct TolerancesOptions {
   std::string result;    ///< path of the result
   std::string response;  ///< name of the response for which tolerances are set; empty if the user names none
   std::optional<std::string> limit;  ///< limit on the root mean square of the response, such as "0.05 mm"
-  /// Reference error: every tolerance gets the effect that the tolerance of this error has. "NAME" or "NAME=0.1 mm".
+  /// Reference error, "NAME" or "NAME=0.1 mm": each tolerance is set so that its effect equals that of the tolerance of
+  /// this error.
   std::optional<std::string> reference;
   std::string folder;        ///< folder for the files; if empty, NAME_tolerances for the result NAME.h5
   bool extrapolate = false;  ///< whether to set tolerances even if a sensitivity index changes with the

@@ -83,7 +83,7 @@ std::string unseen_text(const calibration::Confounded& part, const Matrix& proje
 
 double stated_noise(const CalibrationTable& table, std::string_view what) {
   const auto found = std::ranges::find(table.noise, what, &StatedNoise::what);
-  // `found` is not the end, because reading refuses a study that does not state this noise.
+  // `found` is not the end, because the reader of study files refuses a study that does not state this noise.
   return found->sd / std::sqrt(static_cast<double>(table.repeats));
 }
 
@@ -159,8 +159,8 @@ void MachineCalibration::set_weights() {
     throw InputError(place, "noise is 0, so nothing can be weighed against the tolerances",
                      "state the noise, or write prior = \"none\"");
   }
-  // Without noise, all values get the same standard deviation kEqual (m or rad). It must be small, because the fit has
-  // converged when a step changes the values by less than a small share of it.
+  // Without noise, all values get the same standard deviation kEqual (m or rad). It must be small, because the fit
+  // counts as converged when a step changes the values by less than a small share of this standard deviation.
   constexpr double kEqual = 1e-6;
   weights_.setConstant(kEqual);
 }

@@ -28,7 +28,8 @@ struct Factor {
   std::size_t frame;        ///< index of the limb's frame to which the error belongs, from 0 at the base
   std::string description;  ///< explanation for users
   std::string axis = {};    ///< "x", "y" or "z" if the error is a component of a vector; empty for a scalar
-  /// If the description is that of the user: where the error is and in which direction it acts. Otherwise empty.
+  /// Where the error is and in which direction it acts, if the mechanism's file describes the error in its own words;
+  /// otherwise empty.
   std::string place = {};
 };
 
@@ -293,10 +294,9 @@ class Model {
   /// An evaluator for one thread. The model must outlive it.
   virtual std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const = 0;
 
-  /// An evaluator like evaluator(), but for the displacement that remains after the best correction by the actuators.
-  /// This displacement is that of the platform under a sample's errors, minus a first-order motion by the actuators.
-  /// The motion is the one with the smallest remaining displacement in the measure of separation(). Null: the model
-  /// cannot do this.
+  /// An evaluator like evaluator(), but for the displacement that remains after the best correction by the actuators:
+  /// the displacement of the platform under a sample's errors, minus the first-order motion by the actuators that
+  /// leaves the smallest displacement in the measure of separation(). Null: the model cannot do this.
   virtual std::unique_ptr<Evaluator> calibrated_evaluator(const SolverOptions& /*options*/) const { return nullptr; }
 
   /// The iterations of a solve for these errors [factors] at a reachable pose, both SI; none if the model cannot show

@@ -22,8 +22,8 @@ PlatformPoint arm_of(const PlatformPoint& place, const std::array<double, 9>& R)
   return arm;
 }
 
-/// The factors `once` and `twice` in exp(theta) - 1 = once * hat(theta) + twice * hat(theta)^2, where hat(theta) is the
-/// skew-symmetric matrix of theta.
+/// The factors `once` and `twice` in exp(hat(theta)) - I = once * hat(theta) + twice * hat(theta)^2, where hat(theta)
+/// is the skew-symmetric matrix of theta.
 struct Turn {
   double once;
   double twice;

@@ -23,8 +23,8 @@ using PlatformOrientation = std::function<std::array<double, 9>(std::span<const 
 
 /// The model with the displacements of these points, in the base's axes, appended to its responses. The model must have
 /// the responses x, y, z (displacement of the platform's origin) and theta_x, theta_y, theta_z (rotation vector). If r
-/// is the nominal vector from the platform's origin to a point, the displacement of the point is (x, y, z) +
-/// (exp(theta) - 1) r, or (x, y, z) + theta x r if `is_linear`.
+/// is the nominal vector from the platform's origin to a point, the displacement of the point is (x, y, z) + (R - I) r,
+/// where R is the rotation by theta, or (x, y, z) + theta x r if `is_linear`.
 std::unique_ptr<Model> with_platform_points(std::unique_ptr<Model> model, std::vector<NamedPlatformPoint> points,
                                             PlatformOrientation orientation, bool is_linear);
 

@@ -60,7 +60,8 @@ struct SketchedError {
   /// have adapted, per SI unit of the error. Only one motion if it is the same for all limbs. Empty if the passive
   /// joints are in a singular configuration.
   std::vector<SketchTwist> motions;
-  /// For an error that is not about or along one axis of its frame, such as that of a feature; otherwise none.
+  /// The axis of the error, if it is known and is not an axis of `frame`, as for errors of features; otherwise none. It
+  /// replaces `axis` and `turns`.
   std::optional<SketchedAxis> own = {};
 };
 

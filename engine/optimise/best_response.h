@@ -10,8 +10,8 @@
 /// Lagrange's lower bound on the cost.
 namespace poesy {
 
-/// The prices of a unit of size: of a part, and of the inner part if the part is the outer one of a pair (Within in
-/// least_cost.h). A price is the sum over the limits of multiplier x effect.
+/// The prices per unit of size: the price of a part and, if it is the outer part of a pair (Within in least_cost.h),
+/// that of the inner part. A price is the sum over the limits of multiplier x effect.
 struct Prices {
   double own;  ///< price of the size of the part itself, >= 0
   /// Price of the size of the pair's inner part; 0 without a pair. It may be negative, but own + Within::share x inner

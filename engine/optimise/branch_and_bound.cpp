@@ -29,9 +29,10 @@ struct Node {
   bool operator<(const Node& other) const { return std::tie(other.bound, other.number) < std::tie(bound, number); }
 };
 
-/// The cost of a process at its largest sizes that use no more of any limit than the sizes in `most` do; infinite if
-/// the process has no such sizes. In a pair, the inner part is no larger than in `most`, and the outer part exceeds the
-/// smallest size in which the inner part fits by no more than in `most`.
+/// The cost of a process at its largest sizes that use no more of any limit than the sizes in `most` do. In a pair, the
+/// inner part is no larger than in `most`. The same holds for the excess of the outer part over the smallest size in
+/// which the inner part fits. Infinite if a pair has no such sizes. Precondition for a process of a part in no pair:
+/// process.lo <= most.size.
 double cost_within(const SizedProcess& process, const BestResponse& most, Stacking stacking) {
   const auto cost = [&](const CostLaw& law, double size) { return law.at(tolerance_of(size, stacking)); };
   if (!process.inner) return cost(process.cost, std::fmin(process.hi, most.size));
@@ -104,8 +105,8 @@ class BranchAndBound {
   std::size_t made_ = 0;
 };
 
-/// The cost above which a choice need not be found, because enough cheaper ones are known, up to
-/// SearchOptions::relative_gap. Infinity while fewer choices are known.
+/// The cost above which a choice need not be found: the cost of the worst choice that the result must contain, reduced
+/// by the share SearchOptions::relative_gap. Infinity while too few choices are known.
 double BranchAndBound::cutoff() const {
   if (best_.size() <= options_.alternatives) return kInfinity;
   const double cost = best_.back().allocation.cost;
@@ -200,7 +201,8 @@ void BranchAndBound::raise_greedily(Choice& choice) const {
 }
 
 /// The changes that make one part of a choice cheaper, the largest saving first. A part may change to the next process
-/// in its list, the two parts of a pair together to any process. Only processes that allow one size are considered.
+/// in its list. The two parts of a pair change together, to any of their processes. Only processes that allow one size
+/// are considered.
 std::vector<Raise> BranchAndBound::raises(const Choice& choice) const {
   std::vector<Raise> found;
   for (std::size_t i = 0; i < choice.size(); ++i) {

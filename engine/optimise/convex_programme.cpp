@@ -11,8 +11,8 @@ namespace poesy {
 namespace {
 
 constexpr double kNegligible = 1e-9;  ///< a multiplier below this share of the sum of all multipliers counts as 0
-/// When negligible multipliers are set to 0, the gap between cost and lower bound may double and grow by this share of
-/// the cost.
+/// When negligible multipliers are set to 0, the gap between cost and lower bound may grow to twice its value plus this
+/// share of the cost.
 constexpr double kGoodGap = 1e-11;
 
 const Process& process_of(const AllocationProblem& problem, const SizedProblem& sized, std::size_t part) {
@@ -53,7 +53,7 @@ std::vector<double> lowest_like(const SizedProblem& sized, std::span<const doubl
   return lo;
 }
 
-/// [parts] The tolerances of the sizes lo + keep (sizes - lo), in which lo are the sizes from lowest_like().
+/// [parts] The tolerances of the sizes lo + keep (sizes - lo), where lo are the sizes from lowest_like().
 std::vector<double> tolerances_of(const AllocationProblem& problem, const SizedProblem& sized,
                                   std::span<const double> sizes, double keep) {
   std::vector<double> tolerance(sizes.size());
@@ -69,7 +69,7 @@ std::vector<double> tolerances_of(const AllocationProblem& problem, const SizedP
   return tolerance;
 }
 
-/// The largest s from 0 to 1 for which the sizes lo + s (sizes - lo) keep all limits, in which lo are the sizes from
+/// The largest s from 0 to 1 for which the sizes lo + s (sizes - lo) keep all limits, where lo are the sizes from
 /// lowest_like().
 double share_within(const SizedProblem& sized, std::span<const double> sizes) {
   const double room = 1.0 - 4.0 * rounding_margin(sized.parts());
@@ -134,8 +134,8 @@ DualCertificate without_negligible(const SizedProblem& sized, const DualCertific
 }
 
 /// Adds a multiplier for each tight limit (SizedProblem::tight): the smallest one at which the lowest sizes have the
-/// least cost + price x size for the parts that affect the limit. A multiplier that is zero or infinite is not added.
-/// The lower bound does not change, because these parts are fixed at their lowest sizes.
+/// least cost + price x size for the parts that affect the limit and are in no pair. A multiplier that is zero or
+/// infinite is not added. The lower bound does not change, because these parts are fixed at their lowest sizes.
 void add_tight_limits(const AllocationProblem& problem, const SizedProblem& sized, DualCertificate& found) {
   for (std::size_t l = 0; l < sized.limits; ++l) {
     if (!sized.tight[l]) continue;

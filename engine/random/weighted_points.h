@@ -10,8 +10,8 @@ namespace poesy {
 /// The points of weighted_points() give exact means of polynomials up to this degree.
 inline constexpr std::size_t kExactDegree = 19;
 
-/// Points that represent a distribution: sum of weights[k] f(points[k]) is the mean of f if f is a polynomial of at
-/// most kExactDegree.
+/// Points that represent a distribution: sum of weights[k] f(points[k]) is the mean of f if f is a polynomial of degree
+/// kExactDegree or less.
 struct WeightedPoints {
   std::vector<double> points;   ///< [points] points, in the unit of the error
   std::vector<double> weights;  ///< [points] weights, positive, with the sum 1

@@ -211,7 +211,7 @@ Cell index_cell(double index, double scale, double rounding) {
 }
 
 std::string readable_setting(std::string_view value) {
-  constexpr std::string_view kMarks = "\"{}[], ";  // at which a word ends
+  constexpr std::string_view kMarks = "\"{}[], ";  // characters at which a word ends
   std::string text;
   while (!value.empty()) {
     const char first = value.front();

@@ -34,8 +34,8 @@ bool is_of_feature(const DrawingResult& drawing, std::size_t q, const std::strin
   });
 }
 
-/// [features] What states the sizes of a feature's errors instead of its zones: "measured" if some of them are
-/// measured, "overridden" if [errors.override] sets some of them, else empty.
+/// [features] The word for what sets the sizes of a feature's errors instead of its zones: "measured" if some of them
+/// are measured, "overridden" if [errors.override] sets some of them, else empty.
 std::vector<std::string_view> instead_of_zones(const StoredResult& result) {
   std::vector<std::string> overridden;
   for (StudySetting& one : study_settings(result.study_text)) {
@@ -67,8 +67,8 @@ bool is_between_planes(const StoredResult& result, std::size_t q) {
 }
 
 /// The cell of a zone. It has a tolerance frame (Cell::boxes), except for the tolerance of a distance, for a clearance,
-/// and if something else states the sizes of the errors. instead: what does (instead_of_zones()). q: index of the
-/// feature in the result. size: m.
+/// and if `instead` is not empty. instead: the word from instead_of_zones() for the feature. q: index of the feature in
+/// the result. size: m.
 Cell zone_cell(const StoredResult& result, std::size_t q, std::string_view instead, const std::string& key, double size,
                const std::string& datums) {
   if (key != "-" && !instead.empty()) {

@@ -22,7 +22,8 @@ double size_of(const ValueLimit& limit) {
   return std::isinf(from) ? to : std::isinf(to) ? from : std::max(from, to);
 }
 
-/// Whether all of what is judged is good, or none of it; nothing where some is good or nothing was judged.
+/// True if all of the judged draws, machines or rows are good, false if none is. None if only some are good, or if
+/// nothing was judged.
 std::optional<bool> all_or_none(std::uint64_t good, std::uint64_t judged) {
   if (judged == 0 || (good > 0 && good < judged)) return std::nullopt;
   return good == judged;

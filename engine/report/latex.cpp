@@ -56,9 +56,9 @@ std::size_t significant_digits(std::string_view number) {
   return first == std::string::npos ? 0 : digits.size() - first;
 }
 
-/// Appends zeros to the numbers of a column, up to the most digits that a number of the column with a decimal point
-/// has. So "2.63" beside "2.683" becomes "2.630". A number gets zeros only if its value, rounded to that many digits,
-/// ends in these zeros. c: index of the column.
+/// Appends zeros to the numbers of a column until they have as many digits as the longest number with a decimal point.
+/// So "2.63" beside "2.683" becomes "2.630". A number gets zeros only if its value, rounded to that many digits, ends
+/// in these zeros. c: index of the column.
 void even_digits(Table& table, std::size_t c) {
   std::size_t most = 0;
   for (const std::vector<Cell>& row : table.rows) {

@@ -11,7 +11,7 @@ namespace poesy {
 /// different limbs (copies) differ only in this number. A name that does not end with a number is returned as a whole.
 std::string_view stem_of(std::string_view name);
 
-/// Gives names that differ only in the number of a limb one name: "seat_*" for "seat_1" and "seat_2".
+/// Replaces names that differ only in the number of a limb by a common name: "seat_*" for "seat_1" and "seat_2".
 void join_limbs(std::vector<std::string>& names);
 
 }  // namespace poesy

@@ -339,7 +339,7 @@ std::string merit_sentences(const std::vector<Merit>& a, const std::vector<Merit
     const Merit* other = find(b, merit.what);
     if (other == nullptr) continue;
     const bool is_of_limit = merit.what.starts_with(kLimitMerit);
-    if (is_of_limit && change_of(merit, *other).verdict > Change::worse) continue;  // only in merits_table()
+    if (is_of_limit && change_of(merit, *other).verdict > Change::worse) continue;  // shown only in merits_table()
     const std::string verdicts = verdicts_text(std::array{std::pair('A', &merit), std::pair(letter, other)});
     if (other->others.empty()) {
       sentences.push_back(

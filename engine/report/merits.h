@@ -49,8 +49,8 @@ inline constexpr std::string_view kYieldMerit = "yield";
 /// The name of the cost of an allocation as a figure of merit (Merit::what).
 inline constexpr std::string_view kCostMerit = "cost of all parts";
 
-/// The name of the share of machines within one limit as a figure of merit, without the name of the limited response
-/// that follows.
+/// The beginning of the name of the share of machines within one limit as a figure of merit (Merit::what); the name of
+/// the limited response follows.
 inline constexpr std::string_view kLimitMerit = "share within the limit of ";
 
 /// The largest number of results that can be compared, because each has a letter from A to Z.
@@ -69,9 +69,9 @@ std::string compared_response(std::span<const StoredResult* const> results, cons
 Merit yield_merit(const YieldVerdict& yield);
 
 /// The figures of merit of each of these results; figures of merit of a response, such as its root mean square, are
-/// those of compared_response(). If machines are judged by several limits, the share of machines within each limit is
-/// one as well. The lists are empty if the kind of study has no figures of merit, or if the results have different
-/// metrics, because then equal names mean different things. wanted: see compared_response().
+/// those of compared_response(). If machines are judged by several limits, the share of machines within each limit is a
+/// figure of merit as well. The lists are empty if the kind of study has no figures of merit, or if the results have
+/// different metrics, because then equal names mean different things. wanted: see compared_response().
 std::vector<std::vector<Merit>> compared_merits(const ReportKind& kind, std::span<const StoredResult* const> results,
                                                 const std::string& wanted = {});
 
@@ -89,7 +89,7 @@ struct MeritChange {
 /// The change from a to b. Its interval is made from the intervals of both values (Zou and Donner 2008, Statistics in
 /// Medicine 27, 1693-1702; for shares, Newcombe 1998, ibid. 17, 873-890), as if the values were independent. If both
 /// results use the same draws, so that both values deviate in the same direction, the interval is too wide, never too
-/// narrow. The verdict is Change::other_requirements if b has other requirements than a.
+/// narrow. The verdict is Change::other_requirements if the requirements of b differ from those of a.
 MeritChange change_of(const Merit& a, const Merit& b);
 
 /// A table of the figures of merit that all results have, with a row for each result and its change from the first

@@ -14,7 +14,8 @@ std::string chart_text(const PoseChart& chart) {
   return text;
 }
 
-/// A section on where errors are that the mechanism's file describes in its own words; empty if there are none.
+/// A section on the places of those errors that the mechanism's file describes in its own words; empty if there are
+/// none.
 std::string places_text(const ModelDescription& model) {
   std::string text;
   for (const Factor& factor : model.factors) {

@@ -58,7 +58,7 @@ struct ReportKind {
   MethodWords (*method)(const StoredResult&) = nullptr;  ///< the method, for a paper; null: the kind adds nothing
   /// Adds the kind's own warnings; null: it has none.
   void (*warn)(const StoredResult&, std::vector<std::string>& list) = nullptr;
-  /// Notes on limits far from what is judged (report/far_limits.h); null: the kind judges no limits.
+  /// Notes on limits far from the judged values (report/far_limits.h); null: the kind judges no limits.
   std::vector<std::string> (*far_limits)(const StoredResult&) = nullptr;
   /// The summary at the top of a report. The report appends a sentence on how the solves ended to the line "How sure".
   Answer (*answer)(const StoredResult&);
@@ -68,7 +68,7 @@ struct ReportKind {
   /// Adds sections for which the study's machines are solved again; null: the kind has none. It is called after `page`,
   /// if the study and the model could be made from the result file and the model fits the result (has_pictures()).
   void (*solved_page)(const ReportedResult&, Page&) = nullptr;
-  /// Shares of the errors that colour the picture of the mechanism; null: none.
+  /// The shares of the errors, which colour the picture of the mechanism; null: none.
   ErrorShares (*error_shares)(const StoredResult&) = nullptr;
   /// The root mean square of a response over the errors at each pose, SI; null: the kind has no such values.
   std::vector<double> (*rms_at_poses)(const StoredResult&, std::size_t response) = nullptr;

@@ -203,8 +203,8 @@ class Drawing {
     return points;
   }
 
-  /// The point from which lines to a body's joints are drawn: the origin of the platform or of another body, but for
-  /// the base the mean position of its joints.
+  /// The point from which lines to a body's joints are drawn: the mean position of the base's joints for the base, and
+  /// the body's origin for any other body.
   SketchVector middle_of(std::size_t body) const {
     if (body == kPlatform) return sketch_->platform;
     if (body != kBase) return sketch_->bodies[body].origin;

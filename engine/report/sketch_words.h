@@ -10,8 +10,8 @@
 namespace poesy {
 
 /// The name of a joint in words, from its type and its number: "U joint 1". limb: index from 0. joint: counted from 1
-/// at the base; 0 gives the body where the limb begins, and the number after the last joint the body where the limb
-/// ends.
+/// at the base. The number 0 gives the body where the limb begins; the number after the last joint gives the body where
+/// it ends.
 std::string joint_words(const Sketch& sketch, std::size_t limb, std::size_t joint);
 
 /// The name of a joint in the mechanism's file, with the name of its drive if it has one: "q", "q, driven by motor_1".

@@ -42,8 +42,8 @@ std::string rule(const LimitVerdicts& verdicts) {
       percent_text(verdicts.share));
 }
 
-/// The row of errors and the pose with the value that is compared with a limit, in words; empty if this value is taken
-/// over all poses together.
+/// The pose at which the judged value (LimitVerdict::value) occurs, in words, after the name of its row of errors if it
+/// has one; empty if the value is not that of a single pose.
 std::string place(const StoredResult& result, const LimitVerdict& verdict) {
   if (!verdict.pose) return {};
   const bool named = verdict.row && !result.row_names.empty();

@@ -29,7 +29,7 @@ bool varies(const StoredResult& result, std::size_t response);
 /// A sentence without a full stop. It says that this response does not vary, and what follows from that.
 std::string constant_text(const NamedUnit& response);
 
-/// The given indices of responses in the same order, except that those of responses that do not vary come last.
+/// The given indices of responses. The responses that do not vary are moved to the end; otherwise the order is kept.
 std::vector<std::size_t> varying_first(const StoredResult& result, std::vector<std::size_t> responses);
 
 /// The response by which errors are ranked by default. The candidates are the responses of StoredResult::headline that
@@ -114,7 +114,8 @@ struct RankedResult {
   SolveCounts solves;          ///< how all solves ended
 };
 
-/// Two rankings of the same errors by their effects. In each, the errors have the sizes of the study of that result.
+/// Two rankings of the same errors by their effects. Each ranking uses the sizes that the errors have in the study of
+/// its result.
 struct TwoRankings {
   Table table;                       ///< rank and effect of each error in the results A and B, in the order of A
   double tau;                        ///< Kendall's tau of the effects; NaN if not known

@@ -32,8 +32,8 @@ inline const Axes kByFactor{"factor"};
 inline const Axes kByPose{"pose"};
 /// @}
 
-/// Units of datasets whose numbers have different units: that of the response, of the error (factor), of the response
-/// divided by the error, and m divided by the unit of the error.
+/// Texts for the unit of a dataset whose numbers have different units: the unit of the response, the unit of the error
+/// (factor), the former divided by the latter, and m divided by the unit of the error.
 /// @{
 inline constexpr const char* kResponseUnit = "SI: response unit, see /responses/unit";
 inline constexpr const char* kFactorUnit = "SI: factor unit, see /factors/unit";

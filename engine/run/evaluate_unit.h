@@ -85,7 +85,7 @@ inline constexpr std::size_t kSomePoses = 32;
 /// check an assumption.
 constexpr std::size_t some_poses(std::size_t poses) { return std::min(kSomePoses, poses); }
 
-/// The n-th of these poses. They are evenly spaced over the order of the study's poses. Precondition: n <
+/// The n-th of the some_poses(poses) poses, which are evenly spaced in the list of the study's poses. Precondition: n <
 /// some_poses(poses).
 constexpr PoseIndex some_pose(std::size_t n, std::size_t poses) { return PoseIndex(n * poses / some_poses(poses)); }
 

@@ -84,7 +84,7 @@ MemoryOutlook times(std::size_t count, const MemoryOutlook& each);
 /// Bytes of an EvaluationResult for one row of errors at one pose.
 std::size_t outcome_bytes(const ModelDescription& model, Outcomes outcomes);
 
-/// The text "COUNT THINGS", such as "3 errors x " for the things "errors x ".
+/// The text "COUNT THINGS", such as "3 errors" for 3 and "errors".
 std::string counted_things(std::size_t count, std::string_view things);
 /// The number of samples at each pose as text; for adaptive samples a range, such as "1000 to 100000".
 std::string samples_text(const Plan& plan);

@@ -123,8 +123,9 @@ void ResponseSeries::take_norm(std::size_t r, std::span<double> responses) const
   for (double& value : values) value = std::sqrt(value);
 }
 
-/// Replaces the values of a series by the response, which is their root, or with Form::root_over_error their root times
-/// the magnitude of the scaled error (x_). The error of a root y is the error of y^2 divided by 2 y.
+/// Replaces the values of a series by the responses: their roots, or with Form::root_over_error their roots times the
+/// magnitude of the scaled error (x_). Sets is_left_ where a root y is not precise: rounding changes it by the rounding
+/// error of y^2 divided by 2 y.
 void ResponseSeries::take_root(const Row& row, std::span<double> values) {
   for (std::size_t b = 0; b < values.size(); ++b) {
     const double size = row.form == Form::root_over_error ? std::abs(x_[b]) : 1.0;

@@ -32,8 +32,9 @@ class ResponseSeries {
   static std::array<double, kSolves> errors(double range);
 
   /// Forms the series from the responses [responses x kSolves] at errors(range). Returns false if a series has not
-  /// converged, or differs from a response at a check by more than 1e-14 of its largest magnitude at the nodes and more
-  /// than its rounding (Model::rounding()). After false, evaluate() must not be called.
+  /// converged, or if at a check it differs from its response by more than 1e-14 of the response's largest magnitude at
+  /// the nodes and by more than the response's Model::rounding(). Checks at which the root of a series is not precise
+  /// do not count. After false, evaluate() must not be called.
   bool form(double range, std::span<const double> solved);
 
   /// Computes the responses [responses x errors] at these errors (SI). Adds to `left` the indices of the errors that

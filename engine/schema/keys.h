@@ -37,7 +37,7 @@ struct StudyKey {
   std::string example = {};  ///< example of a value in TOML that is not the default
   std::vector<std::string_view> only_for =
       {};                    ///< words of the chooser (see StudyTable) with which the key applies; empty: all
-  bool may_stay = false;     ///< what happens to the key with other words: true: it is ignored; false: it is refused
+  bool may_stay = false;     ///< true if the key is ignored with other words; false if it is refused
   std::string_view meaning;  ///< what the key means, as a sentence
 };
 
@@ -194,7 +194,7 @@ struct Key {
   std::string example = {};  ///< example of a value in TOML that is not the default
   std::vector<std::string_view> only_for =
       {};                    ///< words of the chooser (see StudyTable) with which the key applies; empty: all
-  bool may_stay = false;     ///< what happens to the key with other words: true: it is ignored; false: it is refused
+  bool may_stay = false;     ///< true if the key is ignored with other words; false if it is refused
   std::string_view meaning;  ///< what the key means, as a sentence
   /// Reads the value if its meaning depends on the model, on files or on other keys; replaces KeyValue::read.
   void (*reader)(const StudyValue& value, Object& object, const Scope& scope) = nullptr;

@@ -83,8 +83,9 @@ std::string unit_remedy(std::string_view text, Dimension dimension) {
 }
 
 /// The advice about the key `refused`, which does not apply with this word of the chooser (StudyTable::chooser): to
-/// remove it. If another required key is missing: to write that key instead, or a word of the chooser for which no
-/// required key is missing. has(name): returns true if the table in the file has this key.
+/// remove it. But if a key that is required with this word is missing, and `refused` is required with another word that
+/// leaves no key missing: to write the missing key instead, or the other word. has(name): returns true if the table in
+/// the file has this key.
 template <class Has>
 std::string remedy_for(const StudyTable& table, const StudyKey& refused, std::string_view word, const Has& has) {
   const auto lacking = [&](std::string_view chosen) {
@@ -115,7 +116,7 @@ constexpr std::array kExpectedKeys{
         "\"uniform\", half_width = \"0.02 deg\" }"},
     ExpectedKey{"run", "threads", "seed", "give it on the command line: --threads N"}};
 
-/// The path of the only table of the file, not inside another one, that has this key; empty if none or several have it.
+/// The path of the only top-level table (not a list of tables) that has this key; empty if none or several have it.
 std::string_view table_with(std::string_view key, const StudyTables& tables) {
   std::string_view found;
   for (const StudyTable& table : tables) {

@@ -16,7 +16,6 @@ namespace {
 /// thousands.
 constexpr int kDeepest = 16;
 
-/// A key of a table, and its value.
 struct Entry {
   std::string_view key;
   const toml::node* value;

@@ -92,8 +92,7 @@ bool is_value(std::string_view word) {
   return std::ranges::find(kValues, word) != kValues.end();
 }
 
-/// Throws InputError if the place where the TOML library noticed a mistake has a quote of a word processor, or is in a
-/// text without quotes.
+/// Throws InputError if the TOML library noticed a mistake at a typographic quote, or in a text without quotes.
 void refuse_missing_quotes(const std::vector<std::string_view>& lines, const std::string& path,
                            const toml::source_position& noticed) {
   constexpr std::array<std::string_view, 7> kTypographic{"\u201c", "\u201d", "\u201e", "\u2018",

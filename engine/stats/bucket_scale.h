@@ -47,7 +47,7 @@ inline constexpr std::size_t kMostPagesSpanned = 1023;
 /// octave, and each bucket is inside one bucket of any coarser scale.
 class BucketScale {
  public:
-  static constexpr unsigned kCoarsest = 2047;  ///< the octave of the scale without buckets of equal width
+  static constexpr unsigned kCoarsest = 2047;  ///< octave of the scale on which widths grow up to the largest double
   /// The largest relative distance of a value from the middle of its bucket, on any scale.
   static constexpr double kRelativeError = 0x1p-8;
   /// The bit that is 1 in the key() of a value below zero.

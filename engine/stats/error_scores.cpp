@@ -90,7 +90,7 @@ void PolynomialScore::find_polynomials(std::span<const double> x, std::span<cons
   AtPoints before{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
   AtPoints now{std::vector<double>(count, 1.0), std::vector<double>(count, 0.0)};
   // `grown` has the values of the same polynomials at c + g (e - c), where the error e has grown by the factor g about
-  // its mean c
+  // its mean c.
   std::vector<double> grown_before(count, 0.0);
   std::vector<double> grown(count, 1.0);
   double norm = 1.0;

@@ -60,8 +60,8 @@ class LinearFitSums {
   std::uint64_t machines_ = 0;
   std::vector<double> x_;   ///< [errors] sums of x over the machines
   std::vector<double> xx_;  ///< [errors x errors] sums of x_p x_q over the machines, q <= p
-  /// [numbers] The numbers of the first machine. They are so near to those of all other machines that no digits cancel
-  /// in sums of the differences from them.
+  /// [numbers] The numbers of the first machine. The numbers of all other machines are so near to these that no digits
+  /// cancel in sums of the differences.
   std::vector<double> shift_;
   std::vector<double> y_;   ///< [numbers] sums of y - shift
   std::vector<double> yy_;  ///< [numbers] sums of (y - shift)^2

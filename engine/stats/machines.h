@@ -17,7 +17,7 @@ namespace poesy {
 /// statistics (counts() in run/result.h).
 struct Rejects {
   std::uint64_t strict = 0;   ///< number of rejects if unsolved samples are rejects
-  std::uint64_t lenient = 0;  ///< number of rejects if unsolved samples are no rejects; at most `strict`
+  std::uint64_t lenient = 0;  ///< number of rejects if unsolved samples are not rejects; at most `strict`
 
   friend bool operator==(const Rejects&, const Rejects&) = default;  ///< Returns true if both are equal.
 };

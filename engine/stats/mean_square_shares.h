@@ -26,7 +26,7 @@ struct MeanSquareShares {
 struct ErrorEffect {
   /// Number of the block of correlated errors to which the error belongs, from 1; 0: the error is independent.
   std::size_t block = 0;
-  /// Largest root mean square of the effect over the poses that may be rounding, in the vector's unit.
+  /// Value up to which the root mean square of the effect over the poses may be rounding, in the vector's unit.
   double rounding = 0.0;
 };
 
@@ -37,8 +37,8 @@ struct ErrorEffect {
 /// times the least-squares variance of each slope. This factor is correct for residuals that are the square of a normal
 /// error z, because E[(z^2 - 1)^2 z^2] = 5 E[(z^2 - 1)^2] E[z^2]. For residuals that do not depend on the error the
 /// interval is too wide. If some errors are correlated, intervals are NaN, because they would leave out the noise of
-/// the correlation, which is that of the fit's machines. poses: the number of poses in the rows. errors: [errors]. All
-/// results are NaN if no error has an effect above its `rounding`. Precondition: 0 < conf_level < 1.
+/// the correlation, which is estimated from the machines of the fit. poses: the number of poses in the rows. errors:
+/// [errors]. All results are NaN if no error has an effect above its `rounding`. Precondition: 0 < conf_level < 1.
 MeanSquareShares mean_square_shares(const LinearFit& fit, std::span<const std::size_t> rows, std::size_t poses,
                                     std::span<const ErrorEffect> errors, double conf_level);
 

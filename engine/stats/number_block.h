@@ -26,7 +26,7 @@ struct NumberBlock {
   /// each number takes two bytes, or four if even the coarsest BucketScale needs more than kMostPagesSpanned pages
   /// (blocks of buckets) for the numbers.
   void write(ByteWriter& to) const;
-  static NumberBlock read(ByteReader& from);  ///< Reads a block. Throws BytesError for one that no numbers can give.
+  static NumberBlock read(ByteReader& from);  ///< Reads a block. Throws BytesError if no numbers can give it.
 };
 
 }  // namespace poesy

@@ -7,8 +7,8 @@
 /// Functions on lists and arrays of accumulators, element by element.
 namespace poesy {
 
-/// Calls visit(one, other) for each pair of corresponding elements, in order. Precondition: both have the same number
-/// of elements.
+/// Calls visit(one, other) for each pair of corresponding elements of two lists, in order. Precondition: the lists have
+/// the same number of elements.
 template <class Ones, class Others, class Visit>
 void for_each_pair(Ones& ones, const Others& others, const Visit& visit) {
   POESY_EXPECTS(ones.size() == others.size());

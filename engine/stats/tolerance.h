@@ -88,8 +88,8 @@ struct Tolerances {
   MeanSquare mean_square;  ///< mean square of the response as a function of the tolerances
 };
 
-/// [errors] sigma with every length replaced by the median length, and every angle by the median angle. These are the
-/// proportions of equal tolerances.
+/// [errors] sigma with each value replaced by the median over all errors of its dimension (length, angle or number).
+/// These are the proportions of equal tolerances.
 std::vector<double> one_size_for_each(std::span<const double> sigma, std::span<const Dimension> dimension);
 
 /// The tolerances for this reference; without a reference, equal_effect is NaN.
@@ -103,7 +103,7 @@ struct LimitTolerances {
   /// the largest tolerance of each error. An error without an effect may still act together with others, so it gets its
   /// equal_tolerance.
   std::vector<double> equal_effect;
-  std::vector<double> equal_tolerance;  ///< [errors] the same number for all lengths, and another for all angles
+  std::vector<double> equal_tolerance;  ///< [errors] one number for each dimension (length, angle, number)
 };
 
 /// The tolerances for this limit. one_size: [errors] the proportions of equal_tolerance. largest: [errors] upper bounds

@@ -20,7 +20,7 @@ struct CheckpointIdentity {
   std::string model;          ///< name of the mechanism
   std::uint64_t seed = 0;     ///< seed of the draws
   std::uint64_t samples = 0;  ///< number of samples, the largest if adaptive; a run may have more
-  std::string study;          ///< resolved study, without the keys that may differ, and mechanism file
+  std::string study;          ///< resolved study without the keys that may differ, then the mechanism file
   std::string poses;          ///< SHA-256 of the poses, hexadecimal
   std::string shard = {};     ///< shard, such as "2/5"; empty for the whole study
 

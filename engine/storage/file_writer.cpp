@@ -158,7 +158,7 @@ void check_name_length(const std::string& path) {
   const std::size_t bytes = fs::path(path).filename().string().size() + kTemporary.size() + 2 * kRandomBytes;
   const long most = ::pathconf(folder_of(path).c_str(), _PC_NAME_MAX);
   if (most < 0 || bytes <= static_cast<std::size_t>(most))
-    return;  // short enough, or of unknown limit: the system then reports a name that is too long
+    return;  // short enough, or the limit is unknown; the system will then report a name that is too long
   throw InputError({.file = path},
                    fmt::format("has too long a name: with what is added while it is written it takes {} bytes, and "
                                "names in its folder have {} at the most",

@@ -295,7 +295,6 @@ herr_t add_name(hid_t, const char* name, const Info*, void* names) {
   return 0;
 }
 
-/// A link in a group.
 struct Link {
   std::string name;
   H5L_type_t type;

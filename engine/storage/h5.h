@@ -65,9 +65,9 @@ struct Value {
 class File {
  public:
   static File in_memory();  ///< An empty file in memory.
-  /// An empty file that is written by `disk`, which must outlive the file, and whose commit() the caller must call
-  /// after close(). FileWriter keeps errors of the disk for FileWriter::check(). HDF5 itself sees an error only if it
-  /// reads back from the disk.
+  /// An empty file that `disk` writes. `disk` must outlive the file, and the caller must call its commit() after
+  /// close(). FileWriter keeps errors of the disk for FileWriter::check(). HDF5 itself sees an error only if it reads
+  /// back from the disk.
   static File on_disk(FileWriter& disk);
   /// An existing plain file, read-only. Throws Error at once for a folder, a FIFO, a device or a socket.
   static File open(const std::string& path);

@@ -60,8 +60,8 @@ double size_of_workspace(const ModelDescription& model) {
   return std::sqrt(squares);
 }
 
-/// The number to compare with errors, SI: a measured deviation or distance itself, but for a measured coordinate its
-/// difference from the pose's coordinate. None if the pose in the file does not have this coordinate.
+/// The number to compare with errors, SI. For a measured coordinate, it is the difference from the pose's coordinate,
+/// or none if the pose in the file lacks this coordinate; otherwise, it is the measured deviation or distance itself.
 std::optional<double> departure(const MachineValue& value, const PoseTable& poses, const ModelDescription& model) {
   if (value.column != MachineColumn::actual) return value.value;
   const auto own = std::ranges::find(model.pose_coordinates, value.quantity, &PoseCoordinate::name);
@@ -81,8 +81,8 @@ double largest_magnitude(std::span<const double> values) {
   return *std::ranges::max_element(values, {}, [](double value) { return std::abs(value); });
 }
 
-/// Warns of an error in a column without a unit, or without a dimension, that is more than ten times as large as the
-/// study's errors of this factor.
+/// Warns of the first error that is more than ten times as large as the study's errors of this factor, if it is a
+/// number without dimension or its column states no unit.
 std::string bare_error_text(std::string_view file, const ErrorTable& table, const Study& study) {
   for (std::size_t v = 0; v < table.bare.size(); ++v) {
     const Factor& factor = study.model().factors[table.factors[v].value];

@@ -23,10 +23,11 @@ std::string outside_pose_text(std::string_view file, const PoseTable& table, con
 /// (workspace_doubts()), one line for each warning. poses: the poses that the study selects.
 std::vector<std::string> doubts_of(const Study& study, const SelectedPoses& poses);
 
-/// Warnings about a table of errors, one line for each: of an error in a column without a unit, or without a dimension,
-/// that is more than ten times as large as the study's errors of this factor (error_size()); of a value that is far
-/// from all others of its column (odd_value_text()); and of a row whose label, such as "mean" or, among parts, "USL",
-/// says that it is no part.
+/// Warnings about a table of errors, one line for each:
+/// - a row whose label says that it is no part, such as "mean" or, among parts, "USL";
+/// - an error that is more than ten times as large as the study's errors of this factor (error_size()), if it is a
+///   number without dimension or its column states no unit;
+/// - if neither is found, a value that is far larger than the others of its column (odd_value_text()).
 std::vector<std::string> error_table_doubts(std::string_view file, const ErrorTable& table, const Study& study);
 
 /// Warns of measured values in columns without a unit that look too large. A deviation, a standard deviation, and the

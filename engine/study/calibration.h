@@ -98,7 +98,7 @@ struct CalibrationTable {
   std::size_t next = 0;                           ///< number of poses to propose for the next measurement
   /// Poses from which the poses to propose are chosen; none: the study's poses.
   std::optional<PoseSelection> candidates = std::nullopt;
-  /// Errors that the study varies and for which [errors] states a distribution, ascending.
+  /// Errors for which [errors] states a distribution, ascending; see errors_with_tolerance().
   std::vector<FactorIndex> with_tolerance = {};
   Place place = {};              ///< place of the table, for messages
   Place measured_place = {};     ///< place of the key `measured`, for messages

@@ -23,9 +23,9 @@ namespace {
 
 using Shape = Distribution::Shape;
 
-/// The smallest size of an error that a study may state, SI. If an error has no effect, its responses are rounding
-/// errors of about 1e-16 times the error. Even for an error of this size, their fourth power, 1e-184, is far above the
-/// smallest double, so that no moment of a response underflows.
+/// The smallest size of an error that a study may state, SI. If an error has no effect, the responses to it are
+/// rounding errors of about 1e-16 times the error. Even the fourth power of a response to the smallest error, 1e-184,
+/// is far above the smallest double, so that no moment of a response underflows.
 constexpr double kSmallest = 1e-30;
 
 /// The largest number of values of a measured distribution. Every result stores them, so they must stay few.
@@ -412,8 +412,8 @@ void check_override(const StudySection& overrides, const Study& study) {
   overrides.allow(known, "factor");
 }
 
-/// Throws InputError for a key that counts for no error, because later keys are for all its errors. counting: the keys
-/// that count for an error.
+/// Throws InputError for a key that has no effect, because later keys fit all errors that it fits. counting: the keys
+/// that have an effect (override_key()).
 void check_counting(const StudySection& overrides, const std::set<std::string>& counting,
                     const ModelDescription& model) {
   for (const std::string& key : overrides.keys()) {
@@ -667,8 +667,8 @@ std::string shown_machines(const TemplateLines& lines, const Study&) {
          "# machines = \"parts.csv\"\n";
 }
 
-/// Returns true if errors of this dimension have the size of all errors of the dimension in a template, where
-/// errors.zones states how features scatter.
+/// Returns true if a template needs the size of all errors of this dimension: some of them do not get their
+/// distribution from errors.zones, which a template states.
 bool uses_usual_size(Dimension dimension, Study shown) {
   shown.errors.zones.emplace();
   const std::vector<std::optional<Distribution>> zones = distributions_by_zones(shown);
@@ -887,8 +887,8 @@ static std::string default_text(std::span<const FactorIndex> errors, Dimension d
                      error_text({default_distribution(dimension)}, dimension, readable_value), error_kind(dimension));
 }
 
-/// Name of the first feature with a zone of which an error varies with the size of all lengths; empty if there is none.
-/// of_parts: errors whose sizes an allocation finds.
+/// Name of the first feature that has a zone although one of its errors varies with the size of all lengths; empty if
+/// there is none. of_parts: errors whose sizes an allocation finds.
 static std::string feature_without_zone(const Study& study, const StudySection& errors,
                                         std::span<const FactorIndex> of_parts) {
   for (const Feature& feature : study.model().features) {

@@ -141,8 +141,8 @@ bool has(const std::vector<FileColumn>& columns, FileColumn::Role role) {
   return std::ranges::find(columns, role, &FileColumn::role) != columns.end();
 }
 
-/// Throws InputError if no column has measured values, if a column of standard deviations has no measured column, or if
-/// one of the columns `distance`, `to` and `name` lacks another one that it needs.
+/// Throws InputError if no column has measured values, if a column of standard deviations has no measured column, if
+/// only one of the columns `distance` and `to` is present, or if `to` is present without `name`.
 void check_columns(const std::vector<FileColumn>& columns, const Place& header) {
   using Role = FileColumn::Role;
   if (std::ranges::none_of(columns, &FileColumn::is_measured)) {

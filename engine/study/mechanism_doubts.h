@@ -33,8 +33,8 @@ std::vector<std::string> workspace_doubts(const Study& study, const PoseSet& pos
 /// questions if the kind of study varies no errors or has StudyKind::finds_sizes. model: the mechanism of the study.
 std::vector<std::string> size_doubts(const Study& study, const Model& model);
 
-/// A question if poses of a study, of which some forty are tried, are on different sides of singular poses
-/// (Model::are_separated()); empty if not.
+/// A question if the first pose of a study and one of up to 40 other poses that are tried are on different sides of
+/// singular poses (Model::are_separated()); empty if not.
 std::string sides_doubt(const Model& model, const PoseSet& poses);
 
 /// A question if features of the drawing vary with the size of all lengths although they have zones

@@ -19,8 +19,7 @@ std::string named_file(const StudyValue& value) {
   if (!file.other().empty()) {
     value.fail("names '" + printable(path) + "', which is " + std::string(file.other()), "name a file");
   }
-  // False if the value does not come from a study file but from a caller of the library, so that there is no study's
-  // folder.
+  // False if the value comes from a caller of the library instead of a study file; there is then no study's folder.
   const bool is_in_file = !value.place().file.empty();
   throw FileError(to_string(value.place()),
                   value.full_name() + " names '" + printable(path) +

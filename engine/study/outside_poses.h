@@ -24,8 +24,8 @@ std::optional<OutsidePose> outside_pose(const PoseSet& poses, const ModelDescrip
 std::string outside_clause(const OutsidePose& outside, const PoseSet& poses, const ModelDescription& model,
                            std::string (*text)(Quantity));
 
-/// The outside_clause() of the first pose that is farther outside the workspace than the workspace is wide, which
-/// suggests a wrong unit. Empty if no pose is.
+/// The outside_clause() of the outside_pose() that is farther outside the workspace than the workspace is wide, which
+/// suggests a wrong unit. Empty if there is none.
 std::string far_outside_clause(const PoseSet& poses, const ModelDescription& model);
 
 }  // namespace poesy

@@ -12,8 +12,8 @@ bool is_key_of(const std::string& key, const std::string& factor) {
   return key == factor || (is_pattern(key) && matches(key, factor));
 }
 
-/// The place of a key in [errors.override] by which it is earlier or later than others. A key that was given on the
-/// command line or in Python has the place of the table, and is later than all keys of the file.
+/// The line and column that order the keys in [errors.override]. A key that was given on the command line or in Python
+/// has the place of the table, and is later than all keys of the file.
 static std::pair<std::size_t, std::size_t> rank_of(const StudySection& overrides, const std::string& key) {
   constexpr std::size_t kLast = std::numeric_limits<std::size_t>::max();
   const Place at = overrides.require(key).place();

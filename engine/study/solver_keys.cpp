@@ -83,8 +83,8 @@ void read_points(const StudyValue& value, Study& study, const Reading& reading) 
   }
 }
 
-/// Returns true if the study asks for the metric "platform" only in order to leave out the mechanism's stiffness:
-/// without stiffness the mechanism has no metric, because it is not over-constrained.
+/// Returns true if the study states the metric "platform", but its model has no metric. "platform" leaves out the
+/// stiffness in the mechanism's file, and without stiffness only an over-constrained mechanism has a metric.
 bool leaves_out_stiffness(const Study& study) {
   const std::optional<MechanismText>& file = study.mechanism.file;
   return study.model().metric.empty() && file && file->entry && !file->entry->description.metric.empty();

@@ -68,8 +68,8 @@ struct ErrorModel {
   /// How features scatter in their tolerance zones; none: the errors of features have the distribution of other length
   /// errors.
   std::optional<drawing::ZoneScatter> zones = {};
-  /// Name of the first feature with a zone whose errors have the distribution of other length errors, because the study
-  /// does not state how features scatter in their zones; empty if there is none.
+  /// Name of the first feature that has a zone although one of its errors has the distribution of other length errors,
+  /// because the study does not state how features scatter in their zones; empty if there is none.
   std::string unused_zone = {};
   std::vector<CorrelatedErrors> correlated = {};  ///< blocks of correlated errors; each factor is in at most one block
   /// Errors that a machine draws anew at each pose, ascending, if draws are Draws::per_machine. A machine draws all

@@ -89,7 +89,8 @@ struct StudyKind {
   std::string_view usual_factors = {};
   /// Name of the factor set that templates hold constant, if the model has this set.
   std::string_view usual_background = {};
-  std::string_view overrides = {};  ///< what may give a constant error another value, in words: "a case sets"
+  /// What may change a constant error: "a case sets", as in "unless a case sets another value". Empty: nothing may.
+  std::string_view overrides = {};
   /// The rows of [analysis] that only this kind has. A row with the name of a shared key replaces this key.
   std::vector<StudyRow> (*rows)() = nullptr;
   StudyTables (*tables)() = nullptr;  ///< tables inside [analysis] that only this kind has
@@ -217,10 +218,11 @@ std::vector<Feature> features_drawn_together(const Study& study);
 void check_zones(const Study& study, const Reading& reading);
 /// Returns true if [errors] states the size of an error, by its dimension or by a key of [errors.override].
 bool states_size(const StudySection& errors, const Factor& factor);
-/// Throws InputError if an error of a feature varies but neither errors.zones nor another key states its size, because
-/// the default size of lengths makes no sense for it. For other errors without a stated size of a mechanism from a
-/// file, adds a warning that names the default to study.doubts. Does nothing unless the study is read for a run.
-/// of_parts: errors that are not checked, because the kind of study finds their sizes.
+/// Sets ErrorModel::unused_zone. If the study is read for a run, also checks the sizes of the errors that vary. Throws
+/// InputError if neither errors.zones nor another key states the size of an error of a feature, because the default
+/// size of lengths makes no sense for it. If the mechanism is from a file, adds to study.doubts a warning that names
+/// the default for other errors without a stated size. of_parts: errors that are not checked, because the kind of study
+/// finds their sizes.
 void check_error_sizes(Study& study, const Reading& reading, std::span<const FactorIndex> of_parts = {});
 /// Throws InputError at the key `correlated` if correlated errors do not all vary together.
 void check_correlated(const Study& study, const Reading& reading);

@@ -44,7 +44,8 @@ struct KnownColumns {
 
 /// A column of the table that is being read.
 struct TableColumn {
-  /// What the cells of a column contain. A `fact` is a column that `poesy export` writes and that is ignored.
+  /// What the cells of a column contain. A `fact` is ignored: a column that `poesy export` writes, or any column that
+  /// read_column() does not ask for.
   enum class Role { number, fact, label, text };
   Role role;               ///< what the cells contain
   std::string_view name;   ///< for a column of numbers, the name of the coordinate or factor (KnownColumn::meant);
@@ -302,9 +303,9 @@ bool are_labels(const std::vector<std::string_view>& cells) {
 }
 
 /// The labels of the rows of a table: the column of labels, if there is one. Otherwise the first column with
-/// `may_name_rows` whose cells may be labels (are_labels()), otherwise the first other column of text whose cells may
-/// be labels. Such a column counts only if it has two rows or more, because a single cell has no other cell to equal.
-/// Empty if there is no column of labels.
+/// `may_name_rows` whose cells may be labels (are_labels()). Otherwise, if the table has two rows or more, the first
+/// other column of text whose cells may be labels: in a single row, the cell of any text would be unique. Empty if
+/// there is no such column.
 RowLabels labels_of(std::span<const TableColumn> columns, Rows rows) {
   using Role = TableColumn::Role;
   const auto label = std::ranges::find(columns, Role::label, &TableColumn::role);

@@ -33,9 +33,9 @@ class CsvLines {
 
   bool done() const { return rest_.empty(); }                 ///< Returns true if all lines were read.
   Place next_place() const { return {path_, line_ + 1, 1}; }  ///< The place of the next line.
-  /// Reads the next line. Throws InputError for a line with a semicolon outside quotes, or with tabs and no comma,
-  /// because these separate its columns instead of commas, and for a quote that is not closed before the next comma or
-  /// the end of the line.
+  /// Reads the next line. Throws InputError if semicolons or tabs separate its columns instead of commas: it has a
+  /// semicolon outside quotes, or tabs and no comma. Also throws for a cell that begins with a quote but does not end
+  /// with one.
   std::vector<CsvCell> next();
 
  private:

@@ -37,7 +37,7 @@ struct Body {
 /// The compliance of a joint's bearing and drive, in the joint's frame before the joint moves.
 struct Bearing {
   /// Index of the joint in the limb. A joint with several freedoms is a series of joints with one freedom each; the
-  /// index is that of the first of them.
+  /// index belongs to the first joint of the series.
   std::size_t joint;
   /// [6 x 6] Matrix from a wrench to a twist (SI); 0 in rigid directions and along passive freedoms.
   Matrix6 compliance;

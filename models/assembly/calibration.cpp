@@ -18,8 +18,7 @@ constexpr double kNothing = 1e-9;
 
 Index index(std::size_t value) { return static_cast<Index>(value); }
 
-/// [6 limbs x drives] The twists of limbs' ends by a unit displacement of each drive, which moves all joints of the
-/// drive.
+/// [6 limbs x drives] The twists of the limbs' ends per unit displacement of each drive. A drive moves all its joints.
 Matrix driven_twists(const AssemblyModel& model, const Nominal& at) {
   const Index rows = 6 * index(at.limbs.size());
   Matrix twists(rows, 0);
@@ -41,8 +40,8 @@ Matrix driven_twists(const AssemblyModel& model, const Nominal& at) {
   return twists;
 }
 
-/// [6 bodies x 6] The matrix from the uncorrected twist of the platform to a twist of each body. The best correction
-/// subtracts this twist from the uncorrected one of the same body.
+/// [6 bodies x 6] The matrix from the uncorrected twist of the platform to the twists that the best correction
+/// subtracts from the uncorrected twists of all bodies.
 Matrix taken_by_drives(const AssemblyModel& model, const Nominal& at) {
   const FirstOrder first_order(model.assembly, at, model.ranks);
   Matrix moved = first_order.effect(driven_twists(model, at)).twists;

@@ -7,7 +7,7 @@
 
 namespace poesy::assembly {
 
-/// An evaluator like assembly_evaluator(), but with displacements after the best correction of the drives
+/// An evaluator like assembly_evaluator(), but with displacements after the best correction by the drives
 /// (Model::calibrated_evaluator). The correction dq is found to first order at the pose: it minimises the root mean
 /// square displacement of the platform's points. If several dq do so, the one with the least norm is taken; this norm
 /// weighs the displacement of each drive by the root mean square displacement of the points that a unit of it causes.

@@ -12,13 +12,13 @@ namespace poesy::assembly {
 /// Returns true if this mismatch [limbs], measured by the metric of the platform's points, is more than rounding.
 bool is_open(const AssemblyModel& model, const Nominal& pose, std::span<const Screw> mismatch);
 
-/// Decides whether the loops of an assembly with errors can be closed at all, if limbs deform each other. If they do
-/// not, Continuation decides. Bodies and passive joints descend from the nominal pose to the configuration at which the
-/// sum of |xi|_W^2 over the limbs is least; xi is the mismatch of a limb, and W the metric of the platform's points.
-/// Let r be the part of the remaining mismatch that bodies and joints of the perfect assembly could take away. N = B^T
-/// W B, with B as in Loops but in this configuration, and C(r) is the matrix of bend() (loops.h). The machine cannot be
-/// assembled if N - 2 C(r) is not positive definite. This is the rule of chain::Assembly; stiffness has no influence on
-/// it.
+/// Decides whether the loops of an assembly with errors can be closed at all, if its limbs deform each other. For limbs
+/// that do not deform each other, Continuation decides. Bodies and passive joints descend from the nominal pose to the
+/// configuration at which the sum of |xi|_W^2 over the limbs is least; xi is the mismatch of a limb, and W the metric
+/// of the platform's points. Let r be the part of the remaining mismatch that bodies and joints of the perfect assembly
+/// could take away. N = B^T W B, with B as in Loops but in this configuration, and C(r) is the matrix of bend()
+/// (loops.h). The machine cannot be assembled if N - 2 C(r) is not positive definite. This is the rule of
+/// chain::Assembly; stiffness has no influence on it.
 ///
 /// Uses plain double arithmetic. The class is meant for two sorts of samples: those that a solver did not solve, and
 /// those with errors that may open a loop.

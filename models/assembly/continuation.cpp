@@ -17,8 +17,7 @@ constexpr double kShortest = 1e-8;
 
 constexpr std::uint32_t kMostOnTheWay = 1000;  ///< largest number of iterations of all strides together
 
-/// Adds the iterations of a solution to those of the next solution, and puts the steps of the first before those of the
-/// next.
+/// Adds the iterations of `before` to those of `next`, and puts the steps of `before` in front of those of `next`.
 void add_iterations(const Solution& before, Solution& next) {
   next.iterations += before.iterations;
   next.steps.insert(next.steps.begin(), before.steps.begin(), before.steps.end());

@@ -52,8 +52,9 @@ class Equilibrium {
   /// Approximately the largest distance by which a twist moves a point of a body, divided by the reach.
   double size(const Screw& twist) const { return (to_unit_ * twist).norm(); }
 
-  /// The scaled matrix of the equations. Its rows and columns are all lambda, then six for each body except the base. A
-  /// null vector is a set of wrenches by which rigid limbs load each other, or a motion of loose bodies.
+  /// The scaled matrix of the equations. Its rows and columns belong to the lambda of all limbs, then to the bodies
+  /// except the base, six for each body. A null vector is a set of wrenches by which rigid limbs load each other, or a
+  /// motion of loose bodies.
   const Eigen::MatrixXd& matrix() const { return matrix_; }
   /// [limbs + 1] The index of each limb's first lambda among all lambda, then the number of all lambda.
   std::span<const Eigen::Index> first_wrenches() const { return first_; }

@@ -20,8 +20,8 @@ class FirstOrder {
   /// The twists of bodies and the wrenches of limbs if errors displace the limbs' ends by the twists xi. xi: six rows
   /// for each limb, a column for each case.
   Balance effect(const Eigen::MatrixXd& xi) const;
-  /// The twists and wrenches of the machine without errors: those by the load and by the mismatch that rounded numbers
-  /// cause, in one column.
+  /// The twists and wrenches of the machine without errors, in one column. The load and the mismatch of rounded numbers
+  /// cause them.
   const Balance& by_load() const { return by_load_; }
 
  private:

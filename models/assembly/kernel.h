@@ -90,8 +90,8 @@ class AssemblyKernel {
   }
 
   /// A displacement or mismatch (in units of the reach, or rad) below this is written as 0. Rounding leaves numbers of
-  /// 1e-16 and of any smaller magnitude; without this limit the values of a response that is zero would have so many
-  /// magnitudes that their statistics take long.
+  /// 1e-16 and smaller. Without this limit, the values of a response that is zero would extend over so many orders of
+  /// magnitude that their statistics would take long.
   static constexpr double kRounding = 1e-20;
   /// The change of the wrenches counts as rounding if the square of the relative change is at most this.
   static constexpr double kWrenches = 1e-24;
@@ -104,7 +104,7 @@ class AssemblyKernel {
   static constexpr double kShort = 1e12;
   static constexpr double kFarStart = 0.25;   ///< a lane is doubtful if its start_move() is above this
   static constexpr double kMoves = 1e-20;     ///< a move whose square is below this is close to rounding, and not slow
-  static constexpr double kSlow = 0.5625;     ///< square of the share of the previous move above which a move is slow
+  static constexpr double kSlow = 0.5625;     ///< a move is slow if its square exceeds this share of the last square
   static constexpr double kFarthest = 100.0;  ///< a lane has not settled if the square of its move is above this
 
   const KernelProblem& problem_;

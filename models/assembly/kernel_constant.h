@@ -6,10 +6,10 @@
 
 namespace poesy::assembly {
 
-/// Makes steps with the constant matrix of the nominal pose. The symbols are those of Equilibrium; dp is the change of
-/// p, and B0 is B at the nominal pose:
+/// Makes steps with the constant matrix of the nominal pose. The symbols are those of Equilibrium, with x = [dq; V]; dp
+/// is the change of p, and B0 is B at the nominal pose:
 ///
-///     [ C  B0 ; B0^T  0 ] [ dp ; x ] = [ xi - C p ; -load - sum of p ; -J^T p ].
+///     [ C  B0 ; B0^T  0 ] [ dp ; x ] = [ xi - C p ; J^T p ; -load - sum of p ].
 ///
 /// If limbs do not deform each other and no load acts, p is 0 and is omitted.
 template <class T>

@@ -33,8 +33,8 @@ class MeetStep {
         matrix_(problem, kSafe),
         twists_(6 * problem.bodies.size(), T(0.0)) {}
 
-  /// Makes one iteration (round), which changes the state in the active lanes. Returns the changes. number: that of the
-  /// round, from 0.
+  /// Makes one iteration (round), which changes the state in the active lanes. Returns the changes. number: index of
+  /// the round, counted from 0.
   LaneChange<T> round(LaneAssembly<T>& state, Mask active, int number) {
     const bool is_new = number % kMatrixRounds == 0;
     if (is_new) {

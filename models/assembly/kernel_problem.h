@@ -89,7 +89,7 @@ struct KernelMark {
   KernelJoint joint;  ///< the joint itself
 };
 
-/// The data from which the responses of a sample are computed. Their order is that of response_values().
+/// The data from which the responses of a sample are computed. The responses have the order of response_values().
 struct KernelReport {
   bool deforms;      ///< true if mismatch is reported
   bool has_motions;  ///< true if displacements of bodies are reported

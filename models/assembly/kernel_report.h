@@ -50,10 +50,11 @@ class KernelReporter {
     row_ += block_.stride;
   }
 
-  /// Writes a displacement or mismatch in the kernel's units, in SI, or 0 if it is rounding.
+  /// Converts a displacement or mismatch from the kernel's units to SI and writes it; writes 0 if it is rounding.
   void put_above_rounding(T value, double unit) { put(T(unit) * select(abs(value) < T(rounding_), T(0.0), value)); }
 
-  /// Writes a vector along the base's axes, in SI. with_norm: also writes its length behind it.
+  /// Converts a vector from the kernel's axes and units to the base's axes and SI, and writes it. with_norm: also
+  /// writes its length behind it.
   void put_vector(const T* vector, double unit, bool with_norm) {
     for (int row = 0; row < 3; ++row) {
       const double* axis = report_.axes + 3 * row;

@@ -46,8 +46,8 @@ class LaneAssembly {
     start_by_series(t, !outside);
   }
 
-  /// The square of the largest move of a body from the nominal pose to the first-order solution; 0 if all lanes start
-  /// from the series of KernelStart.
+  /// The square of the largest move of a body from the nominal pose to the first-order solution. Not meaningful if the
+  /// series of KernelStart is used.
   const T& start_move() const { return start_move_; }
 
   /// Writes the state of the lanes (see KernelStart). row: address of the first number; the others follow at distances

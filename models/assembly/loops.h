@@ -8,8 +8,8 @@
 namespace poesy::assembly {
 
 /// The loops of a perfect assembly at a pose, weighed by the metric W of the platform's points. A vector x contains the
-/// twists V of the bodies and the displacements dq of the passive joints. To first order, x takes B x = V_b - V_a - J
-/// dq away from the mismatch of each limb from body a to body b, with the columns J of the limb's passive joints
+/// displacements dq of the passive joints and the twists V of the bodies. For a limb from body a to body b, x reduces
+/// the mismatch to first order by B x = V_b - V_a - J dq, where J are the columns of the limb's passive joints
 /// (motion_columns()). N is B^T W B, without the idle motions of passive joints.
 class Loops {
  public:

@@ -13,8 +13,8 @@ namespace poesy::assembly {
 /// A joint whose reaction, or whose drive force, is a response.
 struct ReportedJoint {
   std::size_t limb;  ///< index of the limb
-  /// Index of the joint in the limb. A joint with several freedoms is a series of joints with one freedom each: for
-  /// a reaction the index is that of the first of them, for a drive that of the driven one.
+  /// Index of the joint in the limb. A joint with several freedoms is a series of joints with one freedom each. The
+  /// index belongs to the first joint of the series for a reaction, and to the driven joint for a drive.
   std::size_t joint;
   std::string name;  ///< name of the joint in the file
 };

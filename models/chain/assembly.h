@@ -30,9 +30,9 @@ inline constexpr double kNearing = -0.5;
 /// In a machine that can be assembled, r is small: of the order of the mismatch times the errors. In a machine that
 /// cannot be assembled, r does not vanish: the joints rest although the loops are open. There is a motion x of the
 /// joints that changes the mismatch at nominal displacements (J0 x), but hardly at the displacements at which the
-/// joints rest (J x). So N x nearly vanishes, where N = J^T W J. Newton's matrix, minus the derivative of J^T W
-/// delta_mu, is M = N + C(delta_mu), where C(y) is the term that a mismatch y adds to N (C - R in
-/// block_kernel_equations.h). With the removable part r as this mismatch, a machine cannot be assembled if
+/// joints rest (J x). So N x nearly vanishes, where N = J^T W J. Newton's matrix is the negative derivative of J^T W
+/// delta_mu, M = N + C(delta_mu), where C(y) is the term that a mismatch y adds to N (C - R in
+/// block_kernel_equations.h). A machine cannot be assembled if, with the removable part r as the mismatch y,
 ///     N - 2 C(r)
 /// is not positive definite. This criterion does not depend on units or on the size of the machine. At its boundary the
 /// loops just close (theory.md, "Machines that cannot be assembled").

@@ -198,9 +198,9 @@ void for_each_constant(std::span<const FrameError<double>> errors, std::span<con
   }
 }
 
-/// Computes the first-order effects of errors in coordinates of the residual space, whose number is padded to a
-/// multiple of kMapRows. The constant part includes the mismatch that perfect limbs have if the numbers of their file
-/// are rounded.
+/// Computes the first-order effects of errors in coordinates of the residual space. The number of coordinates is padded
+/// to a multiple of kMapRows. The constant part includes the mismatch that perfect limbs have if the numbers of their
+/// file are rounded.
 void BlockSolver::find_map(std::span<const double> displacements, std::span<const FrameError<double>> errors,
                            std::span<const FrameEntry> varied) {
   residual_space_.prepare(first_order_);

@@ -7,7 +7,7 @@
 
 namespace poesy::chain {
 
-/// An evaluator like deformation_evaluator(), but with the platform's displacement after the best correction of the
+/// An evaluator like deformation_evaluator(), but with the platform's displacement after the best correction by the
 /// drives (Model::calibrated_evaluator, left_by_drives). The evaluator projects the rotation and the displacement of
 /// the platform's origin onto the part that no correction can remove. The displacement of the tool and the norms follow
 /// from the projected motion, with finite rotations if the fidelity is exact. Deformations and additional outputs are

@@ -14,7 +14,7 @@
 
 namespace poesy::chain {
 
-/// The points by whose displacements the motion of the platform is reported.
+/// The points whose displacements describe the motion of the platform.
 struct PlatformReport {
   /// Tool point in the platform's frame (m); none if it is not reported.
   std::optional<lie::Vector3<double>> tool = {};

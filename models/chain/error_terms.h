@@ -7,8 +7,8 @@
 
 namespace poesy::chain {
 
-/// The displacement of a joint to which an error is proportional, such as the travel of a slide whose error grows with
-/// the travel.
+/// A joint displacement to which an error is proportional, such as the travel of a slide whose error grows with the
+/// travel.
 struct JointWay {
   std::size_t joint;  ///< index among the joints of all limbs
   double from;        ///< displacement of the joint at which the error is zero (rad, m)

@@ -80,8 +80,8 @@ void FirstOrder::pull_of(std::span<const double> displacements) {
 }
 
 /// With N = J^T W J, d ln det N = trace(N^-1 dN) = 2 sum over a of D_a . dc_a. Here c_a is the column of the passive
-/// joint a. D_a is pull_ of the limb of joint a if column a of N^-1 is the displacement of the passive joints. A motion
-/// m of the part before a joint changes the joint's column c by [m, c].
+/// joint a. The wrench D_a is the entry of pull_ for the limb of joint a, after pull_of(column a of N^-1). A motion m
+/// of the part before a joint changes the joint's column c by [m, c].
 void FirstOrder::determinant_slopes(std::span<lie::Screw<double>> slopes) {
   using Screw = lie::Screw<double>;
   POESY_EXPECTS(slopes.size() == limb_of_frame_.size());

@@ -110,7 +110,8 @@ class LimbSeparation {
 
   /// The drive (Joint::drive) of each column of motions().
   const std::vector<std::size_t>& drives() const { return drives_; }
-  /// The columns of B_i A_i (see separation()), each divided by the length |A_i|_i of the same column of A_i.
+  /// The columns of B_i A_i (see separation()), scaled like Parts, each divided by the length |A_i|_i of the same
+  /// column of A_i.
   const Columns& motions() const { return motions_; }
   /// The length |A_i|_i of a column of A_i (see separation()).
   double driven_length(Eigen::Index column) const { return driven_lengths_[column]; }
@@ -124,7 +125,7 @@ class LimbSeparation {
 
  private:
   Matrix6 lengths_;         ///< matrix for which |lengths xi| is the norm |xi|_i of separation()
-  Matrix6 from_lengths_;    ///< matrix from these lengths to displacements of the platform
+  Matrix6 from_lengths_;    ///< matrix from these lengths to displacements of the platform, scaled like Parts
   Matrix6 beyond_passive_;  ///< projection that removes the part of the passive joints
   Matrix6 beyond_drives_;   ///< projection that also removes the part of the drives
   Columns motions_;
@@ -185,7 +186,7 @@ class SharedDrives {
   std::map<std::size_t, Sum> sums_;
 };
 
-/// The projection of a displacement onto the part that corrections of all drives cannot remove.
+/// The projection of a displacement, scaled like Parts, onto the part that corrections by all drives cannot remove.
 Matrix6 beyond_all_drives(const std::vector<LimbSeparation>& limbs) {
   Columns motions;
   SharedDrives shared;

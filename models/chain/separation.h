@@ -8,7 +8,7 @@
 namespace poesy::chain {
 
 /// The first-order effect of each error on the platform at a reachable pose, and the part of this effect that remains
-/// after the best correction of the drives. If no joint moves, a unit of an error of limb i moves the limb's own
+/// after the best correction by the drives. If no joint moves, a unit of an error of limb i moves the limb's own
 /// platform by the twist xi. After the reaction of the passive joints (J^T W delta_mu = 0, see FirstOrder) the error
 /// moves the platform of the mechanism by B_i xi, the mean of the motions of all limbs' platforms. Let V_i be the
 /// columns of the limb's passive joints, and A_i those of its drives. Then xi splits into
@@ -32,7 +32,7 @@ namespace poesy::chain {
 /// correction. Precondition: platform->points are at least three, not all on a line.
 Separation separation(const DeformationModel& model, std::span<const double> pose);
 
-/// The projection [6 x 6] of a displacement of the platform onto the part that remains after the best correction of all
+/// The projection [6 x 6] of a displacement of the platform onto the part that remains after the best correction by all
 /// drives. The displacement is [theta; displacement of the platform's origin] (rad, m) in the base frame. The
 /// correction makes the norm of the remainder (the norm of separation()) as small as possible. If the displacement is
 /// the effect of an error, the norm of the remainder is the residual of separation(). Returns no value at a pose at

@@ -44,8 +44,9 @@ std::size_t joint_of(const std::vector<SketchedJoint>& joints, std::size_t frame
       std::ranges::count_if(joints, [frame](const SketchedJoint& joint) { return joint.first <= frame; }));
 }
 
-/// SketchedError::own for the error with these terms. None for one term, whose axis is that of the frame; for terms in
-/// several frames; and if errors rotate about joints, because the terms then do not tell the point of a rotation.
+/// SketchedError::own for the error with these terms. There is none if the error has one term, because its axis is an
+/// axis of the frame; if the terms are in several frames; or if errors rotate about joints, because the terms then do
+/// not state the point of a rotation.
 std::optional<SketchedAxis> own_axis(const Sketch& sketch, const ErrorTerms& terms, std::size_t frame) {
   const ErrorTerm& first = terms.front();
   lie::Screw<double> twist = lie::Screw<double>::Zero();

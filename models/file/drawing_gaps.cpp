@@ -146,7 +146,7 @@ PartEffects part_effects(const Mechanism& mechanism) {
   return effects;
 }
 
-/// The largest norm of an effect that counts as none, for an error of length 1.
+/// An effect of an error of length 1 counts as zero if its norm is at most this.
 double largest_rounding(const Mechanism& mechanism, const PartEffects& effects) {
   double largest = 0.0;
   for (const std::vector<Matrix>& limb : effects) {
@@ -168,7 +168,7 @@ std::vector<bool> stated_errors(const Mechanism& mechanism) {
   return is_stated;
 }
 
-/// What an error adds to the error of a part (limb, frame), with lengths in units of the reach; zero: nothing.
+/// The twist that an error adds to the error of a part (limb, frame), with lengths in units of the reach.
 lie::Screw<double> part_of_error(const Mechanism& mechanism, std::size_t error, std::size_t limb, std::size_t frame) {
   lie::Screw<double> column = lie::Screw<double>::Zero();
   for (const chain::ErrorTerm& term : mechanism.terms[error]) {
@@ -326,7 +326,7 @@ std::vector<std::string> uncovered_directions(const Mechanism& mechanism) {
 
 namespace {
 
-/// Whether an error is the only one of all its parts and changes nothing to first order.
+/// Returns true if an error has no effect to first order, and the parts on which it acts have no other error.
 bool is_alone_without_effect(const Mechanism& mechanism, const PartEffects& effects, double nothing,
                              std::size_t error) {
   return std::ranges::all_of(mechanism.terms[error], [&](const chain::ErrorTerm& term) {
@@ -369,7 +369,7 @@ Matrix displacements_of(const Mechanism& mechanism, std::size_t limb, std::size_
   return stated_columns(mechanism, all, limb, frame).bottomRows<3>();
 }
 
-/// The rest of the clause "rod_1 displaces ...", for an error that displaces its part, without a rotation, obliquely to
+/// The rest of the clause "rod_1 displaces ...", if the error displaces its part without rotating it, and obliquely to
 /// the only direction that has an effect. Empty for any other error, and if the errors of the part together reach this
 /// direction.
 std::string oblique_displacement(const Mechanism& mechanism, const PartEffects& effects, double nothing,

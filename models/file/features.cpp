@@ -176,9 +176,9 @@ class FeatureBuilder {
            joint.kind == JointKind::cylindrical;
   }
 
-  /// The other end, at home, of the part on this side of a joint: the point of the next joint that does not slide,
-  /// because the point of a sliding joint does not show where a part ends, or the origin of the body at the end of the
-  /// limb. None for a part of the base or of the body where the limb begins.
+  /// The other end, at home, of the part on this side of a joint. It is the point of the next joint on this side that
+  /// does not slide, because the point of a sliding joint does not show where a part ends. If no such joint follows, it
+  /// is the origin of the body at the end of the limb; if none precedes, there is no value.
   std::optional<Vector3> other_end(PartSide side, const Limb& limb, std::size_t joint) const {
     if (side == PartSide::after) {
       for (std::size_t j = joint + 1; j < limb.joints.size(); ++j) {
@@ -192,9 +192,10 @@ class FeatureBuilder {
     return {};
   }
 
-  /// What an error along the direction of a distance does to the part: longer if the direction leads to the joint from
-  /// the other end of the part, shorter if it leads from the joint to that end; else only the direction is known, as
-  /// for a part of the base and for the distance of a joint that slides.
+  /// The text that says how an error along the direction of a distance changes the part. It makes the part longer if
+  /// the direction leads from the other end of the part to the joint, and shorter if it leads from the joint to that
+  /// end. Otherwise the text only states that the error is along the direction, as for a part of the base and for a
+  /// joint that slides.
   std::string distance_text(const FeatureLines& lines, const FeatureFrame& at, const Limb& limb,
                             std::size_t joint) const {
     constexpr double kMostlyAlong = 0.5;  // smallest cosine of the angle between the direction and the line to the end

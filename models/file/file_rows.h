@@ -69,8 +69,8 @@ std::vector<Reference> references(const StudyValue& value);  ///< Reads a name, 
 /// Throws InputError if a name is empty, is too long, begins with -, or contains a character that names must not have.
 void check_name(const Reference& reference);
 
-/// Adds the name to `taken`. Throws if check_name() does, or if `taken` already has the name. whose: noun in the
-/// message for what has the name.
+/// Adds the name to `taken`. Throws if check_name() does, or if `taken` already has the name. whose: noun for the owner
+/// of the name in the message, such as "limb".
 void add_name(const Reference& reference, std::unordered_set<std::string>& taken, std::string_view whose);
 
 std::string read_name(const StudyValue& value);  ///< Reads a text that passes check_name().

@@ -137,7 +137,7 @@ class Builder {
                      suggestion(reference.name, known));
   }
 
-  /// The point of a joint (m): the value of the key `at`, or for joints P, H and C without `at` that of `from`. depth:
+  /// The point of a joint (m), from the key `at`, or from the key `from` for joints P, H and C without `at`. depth:
   /// number of references followed so far.
   Vector3 joint_point(const LimbLines& limb, const JointLines& joint, std::size_t depth = 0) const {
     if (depth > limb.joints.size()) {

@@ -138,8 +138,8 @@ struct Mechanism {
   std::vector<EachLimb> each = {};            ///< for messages: tables [[error]] with limb = "each"
   ErrorsAbout about = ErrorsAbout::joint;     ///< points about which angular errors of frames rotate
   /// True if the solvers rotate angular errors of a limb's first and last frame about the joint next to the frame
-  /// (chain::Limb::errors_at_joints). False if they rotate them about the origin of base or platform, as always if
-  /// there are features; if `about` is then ErrorsAbout::joint, `terms` contain the displacement of this origin.
+  /// (chain::Limb::errors_at_joints). False if they rotate them about the origin of base or platform. With features it
+  /// is always false; `terms` then contain the displacement of this origin if `about` is ErrorsAbout::joint.
   bool errors_at_joints = true;
   std::vector<Feature> features = {};  ///< features of all limbs
   /// [features] part_T_feature at home: the middle (m) and the axes of each feature in the frame of its part.

@@ -67,7 +67,8 @@ struct PoseMobility {
   bool reached() const { return tracked.unreachable.empty(); }
 };
 
-/// The mobility at `count` poses that fill the workspace evenly (Roberts' sequence), each reached from home.
+/// The mobility at `count` poses that fill the workspace evenly (Roberts' sequence). The path from home to each pose is
+/// tracked.
 std::vector<PoseMobility> workspace_mobility(const Mechanism& mechanism, std::size_t count = 20);
 
 /// Throws InputError if the platform cannot move, if the drives do not hold the platform and all other bodies, if they

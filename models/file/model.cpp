@@ -123,8 +123,8 @@ std::string key_reference() {
 
 namespace {
 
-/// Converts the responses that the file itself defines (`own`) from the model `from`, to whose responses they refer by
-/// index, to the model `to` with another metric. Responses that `to` cannot form are left out.
+/// Converts the responses `own`, which the file itself defines, from the model `from` to the model `to` with another
+/// metric. They refer to other responses by their indices in the model. Responses that `to` cannot form are left out.
 std::vector<OwnResponse> by_names(const std::vector<OwnResponse>& own, const ModelDescription& from,
                                   const ModelDescription& to) {
   const ModelDescription named = described(from, own);
@@ -178,7 +178,7 @@ CatalogEntry entry_of(MechanismFile file, const std::string& path, const std::st
   return with_own(*other, own, other->description);
 }
 
-/// Adds the function that changes loads (CatalogEntry::with_load) to the catalog entry. The entry that this function
+/// Adds the function that changes loads (CatalogEntry::with_load) to the catalog entry. The entry that with_load
 /// returns has all metrics of the file.
 CatalogEntry with_loads(CatalogEntry entry, const MechanismFile& file, const std::string& path,
                         const std::string& text) {

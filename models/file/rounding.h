@@ -30,13 +30,12 @@ enum class Workspace { as_it_is, in_reach };
 /// Checks a mechanism. The numbers count as exact if the mechanism passes check_mobility(), and if no path to the poses
 /// of workspace_mobility() ends because loops stay open. Otherwise the check is repeated with a lower precision; if the
 /// mechanism passes then, its numbers count as rounded. The rank of such a mechanism is taken at a gap between two
-/// consecutive singular values, of which the larger one is above 1e-6 and the smaller one at most 1e-2 of the largest
-/// singular value: at the widest gap with which the mechanism passes check_mobility(). Its loops must close to
+/// consecutive singular values. The larger one must be above 1e-6 of the largest singular value, and the smaller one at
+/// most 1e-2 of it. The gap is the widest with which the mechanism passes check_mobility(). The loops must close to
 /// kRoundedGap of the reach. If the mechanism does not pass as rounded either, the function throws the error of
 /// check_mobility(); but if the loops close to kNamedGap, the InputError names the joint whose numbers would close
 /// them. If check_mobility() found no error, the numbers count as exact although some loops stay open. A branched
-/// mechanism with stiffness is never treated as rounded if check_mobility() finds an error; then this error is
-/// thrown.
+/// mechanism with stiffness is never treated as rounded if check_mobility() finds an error; then this error is thrown.
 Checked checked(Mechanism mechanism, Workspace workspace);
 
 }  // namespace poesy::file

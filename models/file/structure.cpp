@@ -246,8 +246,8 @@ static bool are_at_one_point(const Joint& a, const Joint& b, double reach) {
   return (a.at_home.p - b.at_home.p).norm() <= kRounding * reach;
 }
 
-/// The first joint of this range that turns, if it is a universal or spherical joint, which is the end of a leg;
-/// otherwise none. Joints that slide are left out, because their points need not be ends of anything.
+/// The first joint of type R, U or S in this range if it is U or S, and so the end of a leg; otherwise none. Joints
+/// that slide are left out, because their points need not be ends of anything.
 static const Joint* end_of_leg(auto first, auto last) {
   for (; first != last; ++first) {
     if (first->kind == JointKind::universal || first->kind == JointKind::spherical) return &*first;

@@ -36,8 +36,8 @@ std::vector<std::string> home_outside(const Mechanism& mechanism);
 /// A clause on a load that has no effect because nothing has stiffness. Empty if there is no such load.
 std::vector<std::string> loads_without_effect(const Mechanism& mechanism);
 
-/// A clause about a tool that is farther from the platform's origin than the mechanism's reach, or that is near the
-/// platform's origin if its numbers are read in the base's frame, so that they may have been stated there. At most one.
+/// A clause about a tool that is farther from the platform's origin than the mechanism's reach, or whose numbers may
+/// have been stated in the base's frame, because read there they give a point near the platform's origin. At most one.
 std::vector<std::string> odd_tool(const Mechanism& mechanism);
 
 /// Clauses about coordinates of the workspace that turn the platform by more than a full turn, one clause for each.
@@ -45,7 +45,8 @@ std::vector<std::string> wide_turns(const Mechanism& mechanism);
 
 /// A clause about the first universal joint whose axis on the leg's side is at less than 20 deg to the leg, at home.
 /// The leg is the line to the next joint of type R, U or S, if this is U or S. Such an axis lets the leg swing about
-/// one axis only. At most one clause, because the copies of a limb share it.
+/// one axis only. Universal joints at whose point another joint turns are left out. At most one clause, because the
+/// copies of a limb share it.
 std::vector<std::string> axes_along_legs(const Mechanism& mechanism);
 
 /// Clauses about errors with limb = "each" whose limbs do not all have the same joint motions in the same order, one

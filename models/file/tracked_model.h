@@ -57,8 +57,8 @@ class TrackedModel : public Model {
   ModelDescription description_;
 };
 
-/// A limb in the form that solvers need. drives: drive numbers (chain::Joint::drive) of the joints that move, beginning
-/// with those of this limb. The function removes those of this limb from the front.
+/// A limb in the form that solvers need. drives: drive numbers (chain::Joint::drive) of the joints that move, in this
+/// limb and the following limbs. The function removes the numbers of this limb from the front.
 chain::Limb chain_limb(const Limb& limb, bool errors_at_joints, std::span<const std::size_t>& drives);
 
 /// For each joint that moves, the number of its drive (chain::Joint::drive); 0 if it has no drive, or if the drive

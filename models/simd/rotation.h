@@ -37,7 +37,7 @@ inline constexpr double kCoscSeries[] = {
 inline constexpr double kCubeSeries[] = {
     1.0 / 6.0,        -1.0 / 120.0,        1.0 / 5040.0,          -1.0 / 362880.0,
     1.0 / 39916800.0, -1.0 / 6227020800.0, 1.0 / 1307674368000.0, -1.0 / 355687428096000.0};
-/// Taylor series in theta^2 of (1 - theta/2 cot(theta/2)) / theta^2, used below 0.75 rad.
+/// Taylor series in theta^2 of (1 - theta/2 cot(theta/2)) / theta^2, used below 0.65 rad.
 inline constexpr double kCotSeries[] = {1.0 / 12.0,
                                         1.0 / 720.0,
                                         1.0 / 30240.0,

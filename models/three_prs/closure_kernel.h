@@ -69,8 +69,7 @@ class ClosureKernel {
   void begin(std::size_t g);
   bool round(std::size_t g, std::uint32_t iteration);
   void move(Group& group, const T* step, Mask lanes) const;
-  /// Stores the status and iterations of lanes that have ended, given as bits. Lanes that are given up have 0
-  /// iterations.
+  /// Stores status and iterations of the lanes whose bits are set in `lanes`. A lane that is given up has 0 iterations.
   void end(std::size_t g, unsigned lanes, SolveStatus status, std::uint32_t iterations) const;
   void store(std::size_t g);
 

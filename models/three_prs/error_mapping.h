@@ -30,7 +30,7 @@ using Effects = Eigen::Matrix<double, kMotions, static_cast<int>(kFactors), Eige
 /// from Eq. 15 of San et al. 2023. Not finite at a singular pose.
 Effects first_order_effects(const Geometry& geometry, const Configuration& nominal);
 
-/// The first-order effect of each error on the platform, and its residual after the best correction of the carriages
+/// The first-order effect of each error on the platform, and its residual after the best correction by the carriages
 /// (San et al. 2023, Section 4.2). The rows of J (velocity_jacobian()) and G (error_mapping()) are the three drive rows
 /// and the three constraint rows. So an error has a drive part J^-1 [G_drive; 0] and a constraint part J^-1 [0;
 /// G_constraint], and its effect is their sum. The residual is the least norm of effect + J^-1 [dq; 0] over all

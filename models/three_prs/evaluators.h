@@ -37,7 +37,7 @@ enum class Fidelity : std::size_t {
 /// An evaluator for poses (alpha, beta, z) and the 60 errors of the head, the 3-PRS mechanism.
 std::unique_ptr<Evaluator> head_evaluator(const Geometry& geometry, Fidelity fidelity, const SolverOptions& options);
 
-/// An evaluator like head_evaluator(), but with the displacements after the best correction of the carriages
+/// An evaluator like head_evaluator(), but with the displacements after the best correction by the carriages
 /// (Model::calibrated_evaluator, Corrections). The evaluator subtracts from [theta; dr], and from the swings of the
 /// rods, the parts that the correction causes. The displacement of the tool tip and the norms follow from the corrected
 /// [theta; dr], with finite rotations if the fidelity is exact. At a singular pose every sample is singular.

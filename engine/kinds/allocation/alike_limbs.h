@@ -6,7 +6,8 @@
 
 #include "engine/study/study.h"
 
-/// Compares the joints of limbs, because limbs with different joints are not made alike.
+/// Functions for the key identical_limbs. They compare the joints of limbs, because limbs with different joints are
+/// probably not identical.
 namespace poesy::allocation {
 
 /// A line of a study template, commented out, that shows the key identical_limbs with two limbs as an example: the

@@ -11,7 +11,7 @@ namespace poesy::allocation {
 /// The keys of a cost in study files. They are the same for the cost of a part and the cost of a process.
 StudyTable cost_table();
 
-/// Reads a cost. dimension: that of the tolerance (length, angle or number). Throws InputError at the value if the
+/// Reads a cost. dimension: dimension of the tolerance (length, angle or number). Throws InputError at the value if the
 /// value is not a cost.
 StatedCost read_cost(const StudyValue& value, Dimension dimension);
 

@@ -266,8 +266,8 @@ void read(const h5::File& file, StoredResult& result) {
   check(found);
   found.solves = read_solver<decltype(found.solves)>(file);
   found.certificate.solves = found.total();
-  // A failed sample is stored with its pose and its number in the study of the certificate, with which it can be
-  // replayed.
+  // A failed sample is stored with its pose and its number in the study of the certificate, so that it can be replayed.
+  // Its error is kAllFactors, which read_failures() looks up in `varied`.
   result.varied = {std::string(kAllFactors)};
   found.failures = read_failures(file, result);
   result.varied.clear();
@@ -419,8 +419,8 @@ CsvTable certificate_failures(const Result& found) {
            list_column("status", list, [](const Failure& failure) { return failure.failed.status; })}};
 }
 
-/// Adds the tables of the errors. Their standard deviations are called start_sigma, because they are those with which
-/// the search began; part_table() has those that were found.
+/// Adds the tables of the errors. Their standard deviations are called start_sigma, because the search began with them;
+/// part_table() has the standard deviations that the search found.
 void append_start_sigma(CsvTables& tables, const StoredResult& result) {
   const std::size_t factors = tables.size();
   append_sigma_tables(tables, result);

@@ -31,8 +31,8 @@ constexpr std::array<std::string_view, 12> kKeys{"factors",    "limits", "yield"
 /// The names of the aims (Aim) in study files, in the order of the enumeration.
 constexpr std::array<std::string_view, 4> kAimNames{"least-cost", "equal-effect", "equal-tolerance", "common-factor"};
 
-/// The expected number of rejects in a study with the default number of machines. With so many rejects, the error of
-/// the estimated share of rejects is about 5 %.
+/// The expected number of rejects in a study with the default number of machines. With so many rejects, the relative
+/// standard error of the estimated share of rejects is about 5 %.
 constexpr double kUsualRejects = 400.0;
 constexpr double kFewestUsual = 2000.0;
 constexpr double kMostUsual = 20e6;
@@ -112,8 +112,8 @@ std::optional<double> end_in_sigmas(const AllocatedPart& part, const Study& stud
   return first;
 }
 
-/// Warns of parts whose errors end well within the tolerance, or well beyond it. Parts with the same numbers share a
-/// warning.
+/// Warns of parts for which the distribution of the errors ends well within the tolerance, or well beyond it. Parts
+/// with the same `sigmas` and the same end_in_sigmas() share a warning.
 void doubt_ends(std::span<const AllocatedPart> parts, Study& study) {
   constexpr double kAlike = 0.05;  // relative; a normal truncated at 3 sigma ends 3.04 of its standard deviations away
   std::map<std::pair<double, double>, std::vector<std::string_view>> parts_of;  // by sigmas and end_in_sigmas()

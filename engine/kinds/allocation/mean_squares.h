@@ -31,15 +31,15 @@ inline constexpr std::size_t kDrawsAmongOthers = 64;
 /// deviation sigma adds y(mu + sigma)^2 / 2 + y(mu - sigma)^2 / 2 - y(c)^2 to the mean square of y, where the argument
 /// of y is e, and all other errors are fixed. The centre c of the error (Distribution::centre()) is mu, but 0 if the
 /// values of the error are measured or given in a table. The formula is exact if y is linear in e, or the norm of a
-/// linear function. Let o be the value of the formula with all other errors at their centres, and t
-/// its average over the first `draws` draws of the other errors. If errors interact in pairs, the interactions of this
-/// error add the difference `t - o`. Each interaction belongs to two errors, so half of it is counted for each. Below,
-/// y_0 is y with all errors at their centres, and the sum is over the errors:
+/// linear function. Let o be the value of the formula with all other errors at their centres, and t its average over
+/// the first `draws` draws of the other errors. If errors interact in pairs, the interactions of this error add the
+/// difference `t - o`. Each interaction belongs to two errors, so half of it is counted for each. Below, y_0 is y with
+/// all errors at their centres, and the sum is over the errors:
 ///
 ///     value = y_0^2 + sum of (o + t) / 2,     slope = max(0, t) / sigma^2.
 ///
 /// If errors do not interact, or if draws = 0, t = o, so the value has no sampling noise. For a limit on a spread, y is
-/// the response minus its mean over the poses, and t is always o. If the mechanism is not solved at one of the three
+/// the response minus its mean over the poses, and t equals o. If the mechanism is not solved at one of the three
 /// values of e, o is (10 x MeanSquares::room)^2; draws of the other errors for which this happens are left out of t.
 /// The result has the same bits for any number of threads and on all ranks. None if the run was stopped.
 ///

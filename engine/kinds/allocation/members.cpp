@@ -94,7 +94,7 @@ std::vector<std::string> pieces_of(const std::string& name) {
   return pieces;
 }
 
-/// Returns true if two names are the same but for one number: "rod_1_x" and "rod_2_x".
+/// Returns true if two names differ only in one number: "rod_1_x" and "rod_2_x".
 bool differ_in_one_number(const std::string& one, const std::string& other) {
   const std::vector<std::string> a = pieces_of(one);
   const std::vector<std::string> b = pieces_of(other);
@@ -123,8 +123,9 @@ std::optional<FactorIndex> only_similar(const Factor& factor, std::size_t limb, 
 }
 
 /// The error of limb `limb` that corresponds to `factor`: it has the same frame and dimension, and its name differs
-/// only in the number of the limb. If there is none, the error that only_similar() finds, if that error finds `factor`
-/// in the same way: copies of a limb with a name have the number of the copy in the names of their errors.
+/// only in the number of the limb. If there is none, the error that only_similar() finds for `factor`, provided that
+/// only_similar() finds `factor` for that error. This is the case for copies of a named limb, whose errors have the
+/// number of the copy in their names.
 std::optional<FactorIndex> counterpart(const Factor& factor, std::size_t limb, const ModelDescription& model) {
   const std::string number = std::to_string(factor.limb);
   for (std::size_t at = factor.name.find(number); at != std::string::npos; at = factor.name.find(number, at + 1)) {

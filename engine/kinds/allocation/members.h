@@ -8,7 +8,7 @@
 /// Reads which errors each block [[analysis.parts]] of a study file joins into parts.
 namespace poesy::allocation {
 
-using PartMembers = std::vector<FactorIndex>;  ///< The errors of a part, which share one tolerance; at least one.
+using PartMembers = std::vector<FactorIndex>;  ///< The errors of a part (at least one), which share one tolerance.
 
 using Limbs = std::vector<std::size_t>;  ///< Numbers of limbs, counted from 1 as in study files.
 

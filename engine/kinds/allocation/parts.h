@@ -35,7 +35,7 @@ void check_part_sizes(const StudySection& block, const AllocatedPart& part, cons
 
 bool has_cost(const AllocatedPart& part);  ///< Whether the part, or one of its processes, has a cost.
 
-using poesy::dimension_of;  // of a unit; the next function has the same name
+using poesy::dimension_of;  // the overload for a unit, which the next function would hide
 
 /// The dimension of the part's errors.
 Dimension dimension_of(const AllocatedPart& part, const ModelDescription& model);

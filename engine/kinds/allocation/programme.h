@@ -75,16 +75,16 @@ class ToleranceProgramme {
   /// The derivative of ln(standard deviation of each error) with respect to ln(tolerance of this part); 1 if the part
   /// is in no pair of zones.
   std::vector<ErrorFactor> growth(const TolerancePoint& point, std::size_t part) const;
-  /// The name of this process or grade of a part, and in words the values to which its tolerance is rounded down. Empty
-  /// if the part has none of these.
+  /// The name of this process or grade of a part, followed by a text on the values to which its tolerance is rounded
+  /// down. Empty if the part has none of these.
   std::string chosen_name(std::size_t part, std::size_t process) const;
 
   /// [parts] The tolerance (SI) of each part that follows from [errors] of the study: from the smallest standard
-  /// deviation of the part's errors; for a zone, the smallest size on the drawing. at_most() then replaces tolerances
-  /// that the parts cannot have.
+  /// deviation of the part's errors; for a zone, from the smallest size on the drawing. Tolerances that the parts
+  /// cannot have are replaced as at_most() does.
   std::vector<double> usual() const;
   /// The point at which each part has its largest possible tolerance that is not above `tolerance` [parts]; if there is
-  /// none, its lowest tolerance.
+  /// none, its lowest tolerance. A zone of orientation is at most as wide as its zone of location allows.
   TolerancePoint at_most(std::span<const double> tolerance) const;
   TolerancePoint lowest() const;  ///< The lowest tolerances.
   /// The point with each tolerance rounded down as the study asks for its part. No standard deviation grows. If a

@@ -98,8 +98,8 @@ Probed probe_all(const SearchProblem& problem, ToleranceDesign design) {
   return {std::move(design), std::move(yield)};
 }
 
-/// Selects the parts of which each alone could be made coarser at a lower cost, without more rejects than the design
-/// may have. If all of these parts together would add too many rejects, selects only those that add the fewest.
+/// Selects the parts that could each be made coarser alone at a lower cost, without more rejects than the design may
+/// have. If all of these parts together would add too many rejects, selects only those that add the fewest.
 std::vector<std::size_t> idle_parts(const SearchProblem& problem, const Probed& probed,
                                     std::span<const std::size_t> parts) {
   const auto& [design, coarser_yield] = probed;

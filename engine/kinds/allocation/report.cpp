@@ -164,7 +164,7 @@ void warn(const StoredResult& result, std::vector<std::string>& list) {
   list.push_back(text + ".");
 }
 
-/// Notes on limits of which tolerances use little although no machine is rejected.
+/// Notes on limits of which the tolerances use only a small part. Empty if the certificate has rejects.
 std::vector<std::string> notes_on_far_limits(const StoredResult& result) {
   const Result& found = allocation_of(result);
   std::vector<std::string> notes;
@@ -240,7 +240,7 @@ Answer answer(const StoredResult& result) {
   return lines;
 }
 
-/// The tolerances with which the fresh machines were drawn, as a text for lengths and one for angles: "34 parts with
+/// The tolerances with which the fresh machines were drawn, as one text for lengths and one for angles: "34 parts with
 /// tolerances of 0.01 to 0.05 mm, standard deviations of 0.003 to 0.015 mm".
 std::vector<std::string> tolerance_sizes(const Result& found) {
   std::vector<std::string> sizes;

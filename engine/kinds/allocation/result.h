@@ -95,8 +95,8 @@ struct AllocatedPart {
   double nominal_size = 0.0;                  ///< the nominal size, m; only with the key `grades`
   std::vector<StatedProcess> processes = {};  ///< the processes that may be chosen; only with the key `processes`
   std::optional<PartZone> zone = {};          ///< the zone, if the part is one
-  /// The preferred tolerances, to one of which the search rounds T down at its end; only with a range or with the key
-  /// `processes`.
+  /// The preferred tolerances. In its last stage, the search rounds T down to one of them. Only with a range or with
+  /// the key `processes`.
   std::optional<Rounding> round = {};
 };
 
@@ -132,7 +132,7 @@ struct AllocationStage {
   double cost = 0.0;           ///< total cost at the end of the stage; NaN if no part has a cost
   double lower_bound = 0.0;    ///< lower bound on the least cost in the last optimisation; NaN if the stage changed the
                                ///< tolerances after it, or if the aim is not least_cost
-  double rms_share = 0.0;      ///< share of each limit that the last optimisation allowed as root mean square
+  double rms_share = 0.0;      ///< share of each limit that root mean squares could use in the last optimisation
   std::uint64_t machines = 0;  ///< machines tried at the tolerances of this stage; 0: none
   std::uint64_t rejects = 0;   ///< rejects among these machines
 };
@@ -163,7 +163,7 @@ struct Result {
   /// shares of all parts add up to 1.
   Parts<double> mean_square_share;
   /// The same share for each error. The shares of a part's errors add up to the share of the part; for a location and
-  /// an orientation of one feature, to the sum of both. NaN for an error that is in no part.
+  /// an orientation of one feature, to the sum of both parts' shares. NaN for an error that is in no part.
   Array<double, axis::Factor> error_mean_square_share;
   /// AtBound: 0 between bounds, 1 at the lower bound, 2 at the upper bound, 3 a single possible value; or
   /// kWithoutEffect.
@@ -214,8 +214,8 @@ struct Result {
 
   Aim aim = Aim::least_cost;  ///< what the study optimised
   double total_cost = 0.0;    ///< cost of all parts; NaN if no part has a cost
-  /// Lower bound on the cost of all tolerances that keep the last limits on root mean squares; NaN if the aim is not
-  /// least_cost, or if the tolerances are the lowest ones.
+  /// Lower bound on the total cost of any tolerances that keep the last limits on root mean squares; NaN if the aim is
+  /// not least_cost, or if the tolerances are the lowest ones.
   double lower_bound = 0.0;
   double gap = 0.0;           ///< cost of the tolerances of the last optimisation minus lower_bound
   double wanted_yield = 0.0;  ///< yield that the study asked for

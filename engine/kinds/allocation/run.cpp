@@ -83,8 +83,8 @@ void divide_share(std::span<const double> slopes, std::span<const ErrorFactor> w
   }
 }
 
-/// Returns true if a limit depends on this part with these tolerances (SI): if the part takes more than rounding of the
-/// limit's room.
+/// Returns true if some limit depends on this part at these tolerances (SI): the part uses a share of the limit's room
+/// that is larger than rounding.
 bool has_effect(const ToleranceLimits& limits, std::span<const double> tolerance, std::size_t part) {
   constexpr double kRounding = 1e-12;  // a smaller share of the room is rounding
   for (std::size_t l = 0; l < limits.count(); ++l) {
@@ -94,8 +94,8 @@ bool has_effect(const ToleranceLimits& limits, std::span<const double> tolerance
   return false;
 }
 
-/// The value of Result::bound for a part. An orientation that the drawing does not need is as wide as its
-/// location allows, so what depends on it depends on the location.
+/// The value of Result::bound for a part. An orientation that the drawing does not need is as wide as its location
+/// allows, so a limit that depends on this orientation also depends on the location.
 std::uint8_t bound_of(const ToleranceProgramme& programme, const TolerancePoint& point, const ToleranceLimits& limits,
                       std::size_t part) {
   const AtBound bound = programme.at_bound(point, part);

@@ -22,7 +22,7 @@ std::vector<bool> none_stays(const SearchProblem& problem) {
 /// A candidate that was chosen under changed limits on root mean squares.
 struct Rescaled {
   Candidate candidate;
-  bool moved;  ///< true if its tolerances differ, or if its limits could be made as small as rescale() wants
+  bool moved;  ///< true if the tolerances changed, or if the limits were tightened as far as rescale() wants
 };
 
 /// Divides the limits on root mean squares by the deciding load (deciding_load()) and chooses tolerances under them. If

@@ -65,7 +65,7 @@ struct Linearisation {
 struct Candidate {
   TolerancePoint point;     ///< the present tolerances
   ChosenTolerances chosen;  ///< the solution of the last optimisation, with its lower bound and multipliers
-  double share = 0.0;       ///< the share of each limit that the last optimisation allowed as root mean square
+  double share = 0.0;       ///< the share of each limit that root mean squares could use in the last optimisation
 };
 
 /// The machines of a design with the largest loads. Among them is the machine that decides whether the yield is kept.

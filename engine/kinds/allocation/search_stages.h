@@ -58,8 +58,8 @@ std::vector<std::uint32_t> screen(const SearchProblem& problem, std::span<const 
 ScreenedMachines try_screened(const SearchProblem& problem, const ToleranceDesign& design, const TolerancePoint& point);
 /// Solves all machines with this seed at the tolerances of a candidate, and selects those that may decide (screen()).
 ToleranceDesign try_all(const SearchProblem& problem, Candidate candidate, std::uint64_t seed);
-/// The design with the loads of the machines that screen() selected in place of those from the last trial of all
-/// machines.
+/// The design in which the loads of the screened machines replace the loads that these machines had in the last trial
+/// of all machines.
 ToleranceDesign with_screened_loads(ToleranceDesign design);
 /// Solves only a part of all machines (a pilot) at the design's tolerances. Returns whether one of its rejects is a
 /// machine that screen() did not select.
@@ -103,7 +103,7 @@ struct Settled {
   Candidate feasible;           ///< the last tolerances that an optimisation chose
 };
 
-/// In turn, measures mean squares at the present tolerances and optimises the tolerances, until cost and tolerances
+/// Alternately measures mean squares at the present tolerances and optimises the tolerances, until cost and tolerances
 /// hardly change.
 Settled settle(const SearchProblem& problem, Linearised from, StageLog& log);
 

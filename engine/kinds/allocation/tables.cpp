@@ -35,7 +35,6 @@ std::string margin_text(const Result& found) {
       percent_text(least), percent_text(shown.asked), percent_text(shown.conf_level));
 }
 
-/// The table of the certificate.
 Table certificate_table(const StoredResult& result) {
   const Result& found = allocation_of(result);
   Table table = yield_table(result, {.judge = Judge::yield, .limits = {}, .yield = found.certificate});
@@ -384,7 +383,7 @@ void append_curves(const Result& found, std::vector<Table>& tables) {
   }
   if (!found.curve_factor.empty()) {
     Table table{.name = "cost_of_limits", .caption = "What other limits would cost", .columns = {}};
-    // With a larger Result::fixed_share, other limits change the distribution of the response noticeably.
+    // If Result::fixed_share is at least this, the distribution of the response changes noticeably with the limits.
     constexpr double kConsiderable = 0.05;
     if (have_fixed_share(found, kConsiderable)) {
       table.notes.emplace_back(

@@ -21,8 +21,8 @@ std::vector<AllocatedPart> read_zones(const StudySection& block, const Study& st
 
 /// If one of these parts is a zone of location, and the drawing gives its feature a zone of orientation that is not a
 /// part, adds that zone as a part with the tolerance of the drawing. Throws InputError at `value`, the list of blocks,
-/// if a part is a zone of orientation of features that also have a zone of location, and no part is this zone of
-/// location in the same limbs.
+/// if a part is a zone of orientation whose features also have a zone of location, but no part is that zone of location
+/// in the same limbs.
 void complete_zones(const StudyValue& value, const Study& study, std::vector<AllocatedPart>& parts);
 
 /// The text of the keys of a block that reads back as this part. Precondition: the part is a zone.

@@ -23,8 +23,8 @@ std::vector<std::size_t> positions_of(std::span<const FactorIndex> errors, std::
   return positions;
 }
 
-/// The mean squares of the errors of a feature's middle and tilt if its zone has size 1. The zone is that of location,
-/// or that of orientation if there is no location.
+/// The mean squares of the errors of a feature's middle and tilt if its zone of location has size 1, or, without a zone
+/// of location, if its zone of orientation has size 1.
 struct UnitSquares {
   double middle;
   double tilt;

@@ -39,8 +39,8 @@ std::string_view shape_of(const AllocatedPart& part, const ModelDescription& mod
 DrawnPart drawn_zone(const AllocatedPart& part, const ModelDescription& model, std::span<const FactorIndex> factors);
 
 /// The pairs of a zone of orientation and the zone of location of the same features, in the order of the locations. The
-/// drawing may leave out an orientation whose tolerance is chosen. It leaves out an orientation whose tolerance is
-/// given only if the location is so fine that the orientation does not limit the feature further.
+/// drawing may leave out an orientation whose tolerance is chosen. An orientation whose tolerance is given is left out
+/// only if the location is so fine that the orientation does not limit the feature further.
 std::vector<Within> zone_pairs(std::span<const AllocatedPart> parts, const ModelDescription& model);
 
 }  // namespace poesy::allocation

@@ -140,11 +140,11 @@ struct SolverOfThread {
   calibration::DriveCorrection correction;
 };
 
-/// The displacements that remain at one pose after calibration. left: of the measured machine; none if the pose cannot
-/// be reached. machines: [components x machines] of the machines by which limits are judged (KeptLimits), rad and m.
+/// The displacements that remain at one pose after calibration.
 struct LeftThere {
-  std::optional<calibration::LeftAtPose> left;
-  Matrix machines;
+  std::optional<calibration::LeftAtPose> left;  ///< result for the measured machine; none if the pose cannot be reached
+  Matrix machines;  ///< [components x machines] displacements, rad and m, of the machines by which limits are judged
+                    ///< (KeptLimits)
 };
 
 /// The calibration of one machine.

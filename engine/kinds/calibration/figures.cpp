@@ -40,7 +40,6 @@ std::vector<double> at_rows(const Result& found, const std::string& column, cons
   return list;
 }
 
-/// The numbers in one column of a matrix.
 template <class... A>
 std::vector<double> column_at(const Array<double, A...>& matrix, std::size_t column) {
   std::vector<double> list(matrix.lengths()[0]);

@@ -18,8 +18,8 @@ constexpr std::size_t kMostRows = 10;  // largest number of values in the table
 constexpr int kValueDigits = 6;  // significant digits of measured and fitted values, enough to show that they differ
 constexpr int kResidualDigits = 3;
 
-/// The number by which values are ordered: the magnitude of the residual over its standard deviation, or of the
-/// residual if the noise is not known. 0 if no other value checks the value.
+/// The number by which values are ordered: the magnitude of the residual over its standard deviation, or the magnitude
+/// of the residual if all noise is 0. 0 if no other value checks the value.
 double size_of(const Result& found, std::size_t i) {
   const double size = std::abs(found.noise_is_known != 0 ? found.standardised(i) : found.residual(i));
   return std::isnan(size) ? 0.0 : size;

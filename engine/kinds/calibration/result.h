@@ -71,7 +71,7 @@ struct Result {
   std::uint64_t measured_poses = 0;          ///< number of rows of the table of measurements
   std::uint64_t distances = 0;               ///< number of distances among the values
 
-  double rms = kNaN;         ///< root mean square of residuals divided by the noise
+  double rms = kNaN;         ///< root mean square of the residuals, each divided by its noise
   double chi_square = kNaN;  ///< weighted sum of squared residuals, including the prior
   std::uint64_t dof = 0;     ///< degrees of freedom of chi_square
   double p = kNaN;           ///< p-value: probability of a larger chi_square if the residuals are only noise

@@ -10,7 +10,7 @@
 
 namespace poesy::calibration {
 
-/// What is said of a fit that did not converge, and what to do then.
+/// Texts for a fit that did not converge: a warning, and what the user should do.
 /// @{
 inline constexpr std::string_view kNotConverged =
     "the fit did not converge, so no number of it is to be used or typed in";
@@ -60,10 +60,10 @@ std::optional<LeftLength> left_length(const Result& found);
 std::vector<std::string> left_notes(const Result& found);
 /// A clause on the probability that the machine keeps the limits; empty if that is unknown or there are no limits.
 std::string kept_text(const Result& found);
-/// The parameters to type into the controller, from the value while the machine was measured to the new one: "to type
-/// in: delta_radius 95.0000 -> 95.1139 +- 0.1394 mm". Empty without such parameters.
+/// The parameters to type into the controller, each with its value while the machine was measured and its new value:
+/// "to type in: delta_radius 95.0000 -> 95.1139 +- 0.1394 mm". Empty without such parameters.
 std::string typed_text(const Result& found);
-/// Whether the measurements contradict the fitted errors by the chi-square test, which needs known noise.
+/// Whether the chi-square test, which needs known noise, shows that the measurements contradict the fitted errors.
 bool is_contradicted(const Result& found);
 /// Warnings about outliers, measurements that contradict the fitted errors, and estimates far outside their tolerances.
 std::vector<std::string> calibration_warnings(const Result& found);

@@ -58,9 +58,9 @@ struct CornersAtPose {
   SolveCounts solves;                 ///< how the solves of all corners ended
 };
 
-/// Searches for the worst corners. For each response, the search tries the signs with which the effects of single
-/// blocks add up to first order, and the opposite signs. It does the same for sums and differences of responses with a
-/// sign that share a unit (ModelDescription::signed_headline), because a norm may be largest between the axes of its
+/// Searches for the worst corners. For each response, the search tries the signs with which, to first order, the
+/// effects of all blocks add up, and the opposite signs. It does the same for sums and differences of signed responses
+/// with the same unit (ModelDescription::signed_headline), because a norm may be largest between the axes of its
 /// components. It also tries the corner with all signs positive. Then it flips the sign of each single block at the
 /// worst corner so far, until no flip makes the response worse by more than rounding. Only corners that are solved
 /// (model/status.h) count; the others cannot be assembled, or their solution was not found. The result is not a bound:

@@ -181,7 +181,7 @@ inline bool has_worst_cases(const Result& found) { return !found.worst_case.empt
 ///     worst_case       the largest |response| that was found with either sign of each block (coupling/corners.h)
 ///     root_sum_square  root of the sum over the blocks of S of (effect of the block alone)^2
 ///     cancellation     1 - |sum| / (sum over the sources in S of |effect of each alone|): 0 if no source opposes
-///                      another or if no more than rounding is cancelled, 1 if they cancel
+///                      another or if no more than rounding is cancelled, 1 if the sources cancel completely
 ///
 /// To first order, first_order_sum is the largest effect of the blocks if their signs are unknown, and root_sum_square
 /// is the root mean square effect if the signs of the blocks are independent and equally likely. Neither
@@ -206,8 +206,8 @@ Array<double, axis::Response, axis::Size> coupling_rounding(const Options& study
 /// The names of the sources in each subset, joined: "FS", "T", "FS+T".
 std::vector<std::string> subset_names(std::span<const ErrorSource> sources);
 
-/// Indices of the responses on which no source has an effect larger than rounding at any size and pose with known
-/// effects. Precondition: the effect of some source is known.
+/// Indices of the responses on which no subset of the sources has an effect larger than rounding, at any size and at
+/// any pose with known effects. Precondition: the effect of some source is known.
 std::vector<std::size_t> responses_without_effect(const Result& found);
 
 /// The coupling result in a stored result. Precondition: the result is of kind `coupling`.

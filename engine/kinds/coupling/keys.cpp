@@ -225,8 +225,8 @@ void require_sizes(const StudySection& analysis, Dimension dimension, const Opti
                    "write sizes, e.g. " + key + " = [\"0.1 " + std::string(display_unit(dimension).name) + "\"]");
 }
 
-/// Refuses sizes of a dimension (lengths or angles) if no error of the sources has this dimension. Also considers
-/// errors that the pattern leaves at zero.
+/// Refuses sizes of a dimension (lengths or angles) if no error of the sources has this dimension. Errors that the
+/// pattern leaves at zero count as errors of the sources.
 void refuse_idle_sizes(const StudySection& analysis, Dimension dimension, const Options& study,
                        const ModelDescription& model) {
   const auto value = analysis.find(error_kind(dimension));

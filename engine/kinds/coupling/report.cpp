@@ -105,8 +105,7 @@ Table response_table(const StoredResult& result, std::size_t z, std::size_t r) {
   return table;
 }
 
-/// Whether there is a response of the summary that this source alone changes by no more than rounding, at all poses and
-/// sizes.
+/// Whether, for some response of the summary, the effect of this source alone is only rounding at all poses and sizes.
 bool does_nothing(const StoredResult& result, const std::string& source) {
   const Result& found = coupling_of(result);
   const auto k = static_cast<std::size_t>(std::ranges::find(found.subsets, source) - found.subsets.begin());

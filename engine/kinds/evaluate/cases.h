@@ -86,7 +86,7 @@ inline const Evaluation& evaluation_of(const StoredResult& result) { return foun
 /// The errors of an evaluation, for `poesy replay`; see Kind::given_errors.
 GivenErrors evaluated_errors(const StoredResult& result);
 
-/// The line, from 1, of a row of errors in the file of the table. The first line has the names of the columns.
+/// The line number (from 1) of a row of errors in the file of the table. The first line has the names of the columns.
 inline std::size_t line_of_row(std::size_t row) { return row + 2; }
 
 /// Names of the rows of errors, for verdicts: "part 17" if the rows have labels, otherwise "line 5 (sample 3)", with
@@ -111,7 +111,7 @@ void write_evaluation(const std::string& path, const Study& study, const Selecte
 Table evaluation_table(const StoredResult& result);
 
 /// A response to one row of errors, summarised over the poses at which the row was solved. `mean` and `extreme` are NaN
-/// if it was solved at none.
+/// if there are no such poses.
 struct RowOutcome {
   std::size_t solved = 0;  ///< number of solved poses
   double mean = kNaN;      ///< mean over the solved poses, SI

@@ -416,7 +416,7 @@ void write(ResultBuilder& result, const Study& study, std::any& any) {
 }
 
 /// Reads mean, extreme and count of each case. Files of version 0.2 have no extremes (their `max` is the largest value
-/// with its sign), so all three are computed from the solves, with the policy that gives the counts of the file.
+/// with its sign), so all three are computed from the solves, with the policy that reproduces the counts in the file.
 void read_case_fields(const h5::File& file, Evaluation& found) {
   read_fields(file, "/evaluate", kCaseFields, found);
   if (!found.extreme.empty()) return;

@@ -56,7 +56,7 @@ std::string passes(const StoredResult& result, std::size_t r) {
 }
 
 /// A note like "part 17 is worst in linear_deformation: 0.123 mm at pose 4; 38 of 40 pass". Empty if the rows of errors
-/// have no labels, if none was solved, or if the response is zero but for rounding.
+/// have no labels, if no row was solved, or if the response is zero except for rounding.
 std::string worst_note(const StoredResult& result, std::size_t r) {
   const RowLabels& labels = evaluation_of(result).labels;
   if (labels.names.empty()) return {};
@@ -194,8 +194,8 @@ void add_cases(const StoredResult& result, const PoseFigures& figures, Page& pag
   figures.add_workspace(section, std::move(fields));
 }
 
-/// The quantiles, at these levels, of the solved values in `all`; NaN if none was solved. status: [like all] how each
-/// solve ended.
+/// The quantiles, at these levels, of the solved values in `all`; NaN if none was solved. status: how each solve ended,
+/// in the order of `all`.
 std::vector<double> order_statistics(std::span<const double> all, std::span<const SolveStatus> status,
                                      std::span<const double> levels) {
   std::vector<double> values;
@@ -318,8 +318,8 @@ StudyWords words(const StoredResult& result) {
   return {.samples = counted(found.cases.size(), "case", "cases")};
 }
 
-/// A text on the uncertainty of the outcomes: there is none, except for errors without a column, which real machines
-/// have.
+/// A text on the uncertainty of the outcomes. The only uncertainty comes from errors without a column: they are zero
+/// here, but not in real machines.
 std::string certainty_text(const Evaluation& found) {
   if (found.zero_errors.empty()) return "These errors were given, not drawn, so nothing here is up to chance.";
   return fmt::format(

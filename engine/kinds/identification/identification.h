@@ -29,8 +29,7 @@ struct ErrorSize {
 struct Options {
   /// [groups] Sizes at which errors are tried. For each group the study finds which errors deform the mechanism.
   std::vector<ErrorSize> groups;
-  double pose_share =
-      0.95;  ///< share of the poses at which an error must deform nothing, so as not to count as deforming
+  double pose_share = 0.95;  ///< an error counts as deforming unless it deforms nothing at this share of the poses
 };
 
 /// The kind of study that identifies which errors deform the mechanism at all.

@@ -80,7 +80,7 @@ std::vector<std::string> group_names(const StoredResult& result) {
   return names;
 }
 
-/// Converts numbers of poses to shares of all poses, or to the shares of the remaining poses if `but_these` is true.
+/// Converts numbers of poses to shares of all poses. If `but_these` is true, the share is that of the other poses.
 std::vector<double> share_of_poses(const Result& found, const Result::ByGroup<std::uint64_t>& counts, bool but_these) {
   std::vector<double> list;
   for (const std::uint64_t count : counts) {

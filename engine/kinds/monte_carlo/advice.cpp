@@ -58,10 +58,11 @@ std::string correlated_text(const StoredResult& result, const ResponseShares& sh
 struct Source {
   std::string name;
   double share = 0.0;
-  std::string_view remark = {};  ///< follows the share in the text
+  std::string_view remark = {};  ///< text that follows the share
 };
 
-/// The source to which all correlated errors belong; none if they belong to several. sources: [errors].
+/// The source to which all correlated errors belong; none if they belong to several. sources: [errors] source of each
+/// error.
 std::optional<std::string> only_correlated_source(const std::vector<std::string>& sources,
                                                   const ResponseShares& shares) {
   if (shares.correlated.empty()) return std::nullopt;
@@ -71,9 +72,9 @@ std::optional<std::string> only_correlated_source(const std::vector<std::string>
 }
 
 /// The share of each feature, which is the sum over its errors, and of each error that belongs to no feature. If some
-/// errors are correlated, sources are joined over the limbs, so that those of all limbs are compared with the
-/// correlated errors of all limbs. The share of correlated errors is known only together: it is added to that of their
-/// feature if they all belong to one that has other errors too; otherwise they are a source of their own.
+/// errors are correlated, sources that differ only in the limb are joined, because the correlated errors of all limbs
+/// have only a joint share. This share is added to the share of a feature if all correlated errors belong to this
+/// feature and it has other errors too. Otherwise the correlated errors are a source of their own.
 std::vector<Source> sources_of_scatter(const StoredResult& result, const ResponseShares& shares) {
   std::vector<std::string> names = feature_of_each_error(result);
   if (!shares.correlated.empty()) join_limbs(names);
@@ -98,8 +99,9 @@ std::vector<Source> sources_of_scatter(const StoredResult& result, const Respons
   return sources;
 }
 
-/// Advice on the mean of the response over the machines, if it adds a tenth of the mean square, or more than any source
-/// of scatter; else empty. A tenth counts, because a mean can be removed as a whole, but an error only made smaller.
+/// Advice to remove the mean of the response over the machines. Empty unless the mean accounts for more than a tenth of
+/// the mean square, or for more than any source of scatter. A tenth is enough, because a mean can be removed as a
+/// whole, but an error can only be made smaller.
 std::string offset_text(const StoredResult& result, std::size_t r, double largest_share) {
   constexpr double kNotable = 0.1;
   const YieldResult& yield = *monte_carlo_of(result).machines->yield;

@@ -21,8 +21,8 @@ void sketched_state(Archive& archive, Result& result, std::size_t response, std:
   if (!result.share_magnitude.empty()) archive.real(result.share_magnitude(response, pose));
 }
 
-/// Refuses to read the state of a pose unless its number of samples is a positive multiple of Plan::kUnitSamples and at
-/// most most_samples.
+/// Refuses to read the state of a pose unless its number of samples is a positive multiple of Plan::kUnitSamples, and
+/// not above `most_samples`.
 void expect_whole(const Archive& archive, const SolveCounts& solves, std::size_t most_samples) {
   const std::uint64_t total = solves.total();
   archive.expect(total > 0 && total % Plan::kUnitSamples == 0 && total <= most_samples,

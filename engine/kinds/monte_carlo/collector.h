@@ -112,8 +112,8 @@ class Collector {
   /// [poses] Sums for main effects; set for a finished pose at which they are computed.
   std::vector<std::optional<MainEffectSums>> effects_;
   std::vector<FailedSamples> failed_;  ///< [poses] the first failed samples of each finished pose
-  /// [poses] Packed statistics: of a finished pose for a later study with more samples, of an unfinished pose those
-  /// that were read from a study with fewer samples.
+  /// [poses] Packed statistics. Those of a finished pose are kept for a later study with more samples; those of an
+  /// unfinished pose were read from a study with fewer samples.
   std::vector<Kept> kept_;
   std::size_t kept_bytes_ = 0;
 };

@@ -84,8 +84,8 @@ double largest_share(const YieldResult& yield, std::span<const std::size_t> resp
 /// The errors whose effect on the yield was tested, and those whose effect is distinguished from zero ("told").
 struct ToldErrors {
   std::vector<std::size_t> told;  ///< positions of the errors whose effect is distinguished from zero: first those
-                                  ///< whose share in the scatter of a response is certainly above zero, then the
-                                  ///< others; in each group the largest loss of yield first
+                                  ///< whose share in the scatter of a response is certainly above zero or unknown,
+                                  ///< then the others; in each group the largest loss of yield first
   std::size_t tested = 0;  ///< number of errors whose effect was tested: their change of the yield is known, and not
                            ///< all their shares in scatter are known to be zero
   std::size_t known = 0;   ///< number of errors whose change of the yield is known
@@ -165,7 +165,8 @@ std::string together_note(const StoredResult& result, const ResponseShares& shar
       some_names(names_of(result.factors, shares.correlated)));
 }
 
-/// Puts a line for the correlated errors together into a table of shares. columns: position of each response's share.
+/// Adds to a table of shares a line with the joint shares of the correlated errors. columns: position of each
+/// response's column of shares.
 void add_together(Table& table, const YieldResult& yield, std::span<const std::size_t> responses,
                   std::span<const std::size_t> columns) {
   const ResponseShares first = shares_of(yield, responses.front());

@@ -23,16 +23,18 @@ std::vector<double> in_order(const MainEffects::Indices& values, std::span<const
 
 /// The shares of errors in the scatter of a limited response.
 struct ResponseShares {
-  std::size_t response;  ///< position of the limited response that rejects most machines, among those with known shares
+  std::size_t response;          ///< position of the limited response
   std::span<const double> each;  ///< [errors] share of each error; NaN for correlated errors; refers to the result
   std::vector<std::size_t> correlated;  ///< positions of the errors whose shares are known only together
-  double together;  ///< share of the correlated errors together: what is linear in the errors, less the other shares
+  double together;  ///< joint share of the correlated errors: the share that is linear in the errors, minus the shares
+                    ///< of the other errors; 0 without correlated errors
 };
 
 /// Name of correlated errors as one source of scatter: "6 correlated errors together".
 std::string together_text(const ResponseShares& shares);
 
-/// The shares of errors in the scatter of one limited response; none if the result has no yield or no known shares.
+/// The shares of errors in the scatter of the limited response that rejects most machines, among the responses with
+/// known shares; none if the result has no yield or no known shares.
 std::optional<ResponseShares> response_shares(const StoredResult& result);
 
 /// Tables of the errors' shares in the scatter of the limited responses, and of the change of the yield by each

@@ -75,8 +75,8 @@ const Group<MonteCarlo> kMonteCarlo{
       "and no main effects; left out where all vary",
       Presence::where_computed}}};
 
-/// The arrays of numbers that a CSV table shows. The last axis of each array has the lines of the table; arrays of
-/// quantiles have one more axis after it, for the quantiles.
+/// The arrays of numbers that a CSV table shows. The last axis of each array is the axis of the table's lines; only
+/// arrays of quantiles have one more axis after it, for the quantiles.
 template <class Numbers, class Quantiles, class Counts>
 struct ShownNumbers {
   /// The arrays of the columns before the column `count`, each with its heading.
@@ -89,7 +89,7 @@ struct ShownNumbers {
   const Numbers& quantile_error;
 };
 
-// Written out, because clang 14 does not deduce the arguments of aggregates.
+// This deduction guide is needed, because Clang 14 does not deduce the template arguments of aggregates.
 template <class Numbers, class Quantiles, class Counts>
 ShownNumbers(std::vector<std::pair<std::string, const Numbers*>>, const Counts&, const Numbers&, const Quantiles&,
              const Quantiles&, const Quantiles&, const Numbers&) -> ShownNumbers<Numbers, Quantiles, Counts>;

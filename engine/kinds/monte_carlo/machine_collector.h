@@ -17,8 +17,8 @@ namespace poesy::monte_carlo {
 
 /// Merges units (blocks of machines) in their order. UnitFold (run/unit_fold.h) adds the units to an object of this
 /// class. The object keeps a quantile sketch for each response at each pose. Memory hardly grows with the number of
-/// machines: by one MachineSums for each octal digit of the number of units (MergeTree), and by one byte for each
-/// machine below MachineTable::kept().
+/// machines: by one MachineSums for each octal digit of the number of units (MergeTree), and by one byte for each of
+/// the first MachineTable::kept() machines.
 class MachineCollector {
  public:
   /// Keeps references to both arguments.

@@ -37,7 +37,8 @@ Table values_table(const StoredResult& result) {
   const auto number = [&result](std::string name, std::string heading, const auto& values, int dispensable = 0) {
     return FilledColumn{number_column(std::move(name), std::move(heading), "", dispensable),
                         [&result, &values](std::size_t r) {
-                          return value_cell(values.row(r).back(), result.responses[r]);  // number, or highest quantile
+                          // The last value of a row is its only number, or the quantile of the highest level.
+                          return value_cell(values.row(r).back(), result.responses[r]);
                         }};
   };
   const MachineValues& largest = machines_of(result).largest;

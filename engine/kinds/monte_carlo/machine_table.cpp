@@ -65,7 +65,7 @@ ErrorScores scores_of(const Plan& plan, const ErrorScores& all, Draws draws) {
 }
 
 /// The number of machines from which the gradient of the yield is estimated by a linear map from the errors to the
-/// responses. With so many machines the estimate takes about a second, but there are at least kLeast and at most kMost.
+/// responses. With this number the estimate takes about a second, unless kLeast or kMost bounds the number.
 /// 0 if this gradient is not wanted or not possible.
 std::size_t mapped_machines(const Plan& plan, const LimitedVectors& vectors, const ErrorScores& scores) {
   constexpr std::size_t kMostWork = 1'000'000'000;  // multiplications for all machines

@@ -28,7 +28,7 @@ struct PartGroup {
 /// All groups of measured errors of a study.
 struct PartGroups {
   /// Whether the influence of parts can be computed. False if a machine draws a measured error anew at each pose, or if
-  /// a measured error is correlated with an error that is not measured or is measured on other parts.
+  /// a measured error is correlated with an error that is not measured, or is measured on another number of parts.
   bool known = true;
   std::vector<PartGroup> each = {};  ///< the groups; an error is in one group only
 };

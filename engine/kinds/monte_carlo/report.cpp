@@ -113,8 +113,8 @@ std::vector<double> at_poses(const Result::QuantilesAtPoses& quantiles, std::siz
   return values;
 }
 
-/// The pose at which the quantile of a response of the highest level is largest, and other poses at which the samples
-/// do not show it to be smaller.
+/// The pose at which the highest-level quantile of a response is largest, and the other poses at which the samples do
+/// not show this quantile to be smaller.
 struct WorstPoses {
   std::vector<double> quantile;  ///< [poses] quantile of the highest level
   std::size_t worst;             ///< pose with the largest quantile
@@ -403,7 +403,7 @@ std::vector<double> pose_weights(const Result& found, const Study& study) {
 
 constexpr std::string_view kWhatToDo = "What to do";
 
-/// Adds to the page the section that predicts the yield at other sizes of the errors, and tells in the summary which
+/// Adds to the page the section that predicts the yield at other sizes of the errors, and states in the summary which
 /// changes raise the yield most. Adds nothing if there is no yield, or if machines are calibrated.
 void add_solved_page(const ReportedResult& reported, Page& page) {
   const Result& found = monte_carlo_of(reported.stored);

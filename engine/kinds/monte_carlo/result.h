@@ -85,8 +85,8 @@ struct YieldResult {
   Array<double, axis::Response> by_response = {};
   Array<double, axis::Response> by_response_ci_low = {};   ///< lower ends of the intervals of by_response
   Array<double, axis::Response> by_response_ci_high = {};  ///< upper ends of the intervals of by_response
-  /// Share of machines that break the limit of the response and are beyond it, or not solved, at the pose. NaN for a
-  /// limit on the spread over the poses.
+  /// Share of machines that break the limit of the response and that, at this pose, are beyond the limit or not solved.
+  /// NaN for a limit on the spread over the poses.
   Array<double, axis::Response, axis::Pose> worst_pose_share = {};
   /// Derivative of the yield with respect to the sigma of each error, 1/m or 1/rad; NaN if not known.
   Array<double, axis::Factor> gradient = {};
@@ -109,8 +109,8 @@ struct YieldResult {
   /// Upper ends of the intervals of mean_square_share.
   Array<double, axis::Response, axis::Factor> mean_square_share_ci_high = {};
   Array<double, axis::Response> linear_share = {};  ///< share of the scatter that is linear in the errors
-  /// Root mean square over the poses of the mean of each limited response over the machines; for a norm, of the mean of
-  /// its vector. NaN if not known. Files of version 0.2 do not have this list and the next one.
+  /// Mean of each limited response over the machines (for a norm: of its vector), as a root mean square over the poses.
+  /// NaN if not known. Files of version 0.2 do not have this list and the next one.
   Array<double, axis::Response> offset = {};
   Array<double, axis::Response> offset_share = {};  ///< share of the squared offset in the whole mean square
 

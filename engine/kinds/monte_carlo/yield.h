@@ -63,9 +63,10 @@ void leave_out_per_pose(const Plan& plan, MainEffects& effects);
 /// errors are valid if they were computed at single poses.
 void leave_out_curves_per_pose(const Plan& plan, MainEffects& effects);
 
-/// Sets indices and curves to NaN for responses that do not vary (stats/indices.h) at the poses over which the
-/// variances of indices are summed, or between machines. Records in found.varies which responses vary at some pose, if
-/// not all do. rounding: [responses] see joint_rounding() (run/response_rounding.h).
+/// Sets the indices and curves of a response to NaN if it does not vary (stats/indices.h) at the poses over which the
+/// variances of indices are summed, and those of its largest magnitude if this does not vary between machines. Records
+/// in found.varies which responses vary at some pose, if not all do. rounding: [responses] see joint_rounding()
+/// (run/response_rounding.h).
 void leave_out_constant(std::span<const double> rounding, Result& found);
 
 /// [errors] The distribution of each error within its bins of equal probability.

@@ -134,8 +134,8 @@ std::optional<FewMatter> few_matter(const StoredResult& result) {
   return few;
 }
 
-/// The errors whose effects cannot be told from the largest, as a clause: "; not told apart from it: delta_2, delta_3".
-/// Empty if there are none.
+/// A clause that names the errors whose effects cannot be distinguished from the largest effect: "; not told apart from
+/// it: delta_2, delta_3". Empty if there are none.
 std::string like_largest_clause(const StoredResult& result, const RankedErrors& ranked) {
   const GlobalIndices shown = shown_indices(result);
   const std::size_t r = ranked.response;
@@ -183,8 +183,8 @@ std::string sure_text(const StoredResult& result, const RankedErrors& ranked) {
 struct Measures {
   std::vector<std::string> calibrate;  ///< errors whose effect calibration can remove almost completely
   std::vector<std::string> hold;       ///< errors that need tight tolerances
-  double removable = 1.0;  ///< share of its effect that calibration can remove, for the error in `calibrate` for which
-                           ///< this share is smallest
+  double removable = 1.0;  ///< smallest share of an error's effect that calibration can remove, over the errors in
+                           ///< `calibrate`
 };
 
 /// Returns true if the indices describe the deviations that remain after a calibration.

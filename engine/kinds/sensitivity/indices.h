@@ -27,7 +27,7 @@ std::vector<Estimate> global_indices(const CellStats& at_poses, double sigma, do
 Result sensitivity_result(const Plan& plan, CellStats cells, Array<double, axis::Response, axis::Pose> background,
                           std::vector<double> rounding, double conf_level);
 
-using poesy::index_rounding;  // of numbers; the next function has the same name
+using poesy::index_rounding;  // takes only numbers; the next function would hide it
 
 /// The magnitude below which the index of an error is rounding (stats/indices.h). sigma: standard deviation of the
 /// error. All numbers are SI.

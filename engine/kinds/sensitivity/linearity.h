@@ -57,8 +57,8 @@ inline constexpr std::string_view kSizesNotTested =
 /// A text on the errors with an effect. It states for how many of them the index on the response holds at a tenth of
 /// the size, and names those for which it does not hold, the largest change first: "the index on gap holds at a tenth
 /// of the size, within 2 %: 15 of 25 errors with an effect; not for epsilon_3_4_z (-99.1 %), ...". unnamed: errors that
-/// are counted but not named. If the samples were solved to first order, no index is said to hold: kSizesNotTested, and
-/// the names.
+/// are counted but not named. If the samples were solved to first order, the text is kSizesNotTested, followed by the
+/// names.
 std::string index_change_text(const StoredResult& result, std::size_t response,
                               std::span<const std::size_t> unnamed = {});
 

@@ -131,7 +131,7 @@ Common errors_in_order(const RankedResult& a, const RankedResult& b, RowOrder or
 }
 
 /// The order in which narrow tables omit columns: higher numbers first. The published index is omitted first, then the
-/// indices for other responses, beginning with the last response, then the rank.
+/// indices for other responses, beginning with the last response, then the rank and the other columns of this list.
 enum Dispensable : int { kIndexChange = 1, kNotConverged = 2, kRank = 3, kFirstOther = 4 };
 
 /// The headline's responses (those that a summary shows) whose unit is not "1", without the response by which errors

@@ -37,7 +37,7 @@ GlobalIndices shown_indices(const StoredResult& result);
 /// The distance of the farther end of an index's interval from the index, divided by the index.
 double relative_reach(const GlobalIndices& indices, std::size_t response, std::size_t factor);
 
-// For single numbers; functions below have the same names.
+// These functions take only numbers; functions below with the same names would hide them.
 using poesy::has_effect;
 using poesy::index_rounding;
 

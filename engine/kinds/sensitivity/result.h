@@ -40,7 +40,7 @@ struct Options {
 extern const StudyKind kStudy;
 
 /// How much of each error's effect the actuators can remove, to first order. Effects are those of Separation
-/// (model/model.h), in m per SI unit of the error. NaN if an error has no effect.
+/// (model/model.h), in m per SI unit of the error. Shares are NaN if an error has no effect.
 struct SeparationResult {
   /// A number for each error and pose.
   using Cells = Array<double, axis::Factor, axis::Pose>;

@@ -224,7 +224,7 @@ std::string commands_of(const Confirmation& written) {
   return commands;
 }
 
-/// Writes the table of tolerances and the studies that test these tolerances. Returns text about the files.
+/// Writes the table of tolerances and, with a limit, the studies that test them. Returns text about the files.
 std::string write_files(const TolerancesOptions& options, const StoredResult& result, const ResponseTolerances& found,
                         const Catalog& catalog) {
   const std::string beside = std::filesystem::path(options.result).stem().string() + "_tolerances";

@@ -158,8 +158,8 @@ void add_limit_notes(std::vector<std::string>& notes, const StoredResult& result
       "allocation");
 }
 
-/// Adds a note on how far the limit may be exceeded even if every effect is linear, if the response combines several
-/// norms, because their mean squares do not add exactly.
+/// Adds a note if the response combines several norms. Their mean squares do not add exactly, so the note states how
+/// far the limit may be exceeded even if every effect is linear.
 void add_bound_note(std::vector<std::string>& notes, const StoredResult& result, const ResponseTolerances& tolerances) {
   if (!tolerances.limit) return;
   const double bound = std::sqrt(sensitivity_of(result).mean_square_bound(tolerances.response));

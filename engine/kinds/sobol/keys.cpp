@@ -157,7 +157,8 @@ void check_named_groups(const Study& study, const StudySection& section) {
   }
 }
 
-/// Throws InputError if the samples cannot be divided equally among the replicates.
+/// Throws InputError if the samples cannot be divided equally among the replicates, with at least two for each, or if
+/// random draws have the key `replicates`.
 void check_replicates(const Study& study, const StudySection& analysis) {
   const Options& asked = asked_of<Options>(study.analysis);
   const auto replicates = analysis.find("replicates");

@@ -89,12 +89,12 @@ struct PanelSums {
   std::vector<SolveCounts> solves;      ///< [poses] how the solves at each pose ended
   std::vector<FailedSamples> failed;    ///< [poses] first samples of A that were not solved
   std::vector<std::uint64_t> failures;  ///< [poses] number of samples of A that were not solved
-  std::uint64_t end = 0;                ///< the number of every sample is below this
+  std::uint64_t end = 0;                ///< all numbers of samples are smaller than this
 
   /// Adds later samples of the same panel. Precondition: the samples of `later` come after those of this object.
   void merge(const PanelSums& later);
-  /// These sums as those of a single sample, whose values are the means over all samples; moments and counts are
-  /// copied. This is for a replicate of a design: its samples depend on each other, so only their mean is an
+  /// Returns the sums over a single sample, whose values are the means over all samples of this object; moments and
+  /// counts are copied. This is for a replicate of a design: its samples depend on each other, so only their mean is an
   /// independent sample.
   PanelSums as_one() const;
 
@@ -211,8 +211,8 @@ class PanelEvaluator {
   /// For each pair of groups: GroupRows::first of both groups as one, minus GroupRows::first of each group alone,
   /// summed over the poses.
   OfSamples<axis::Response, axis::GroupPair> pair_first_;
-  /// Squared difference of A and B, summed over the poses at which A, B and the mixtures of both groups and of the pair
-  /// count.
+  /// Squared difference of A and B, summed over the poses at which A, B, the mixture of each of the two groups and the
+  /// mixture of the pair count.
   OfSamples<axis::Response, axis::GroupPair> pair_between_;
   /// Blocks of correlated errors that belong to several groups, for Shapley effects.
   std::vector<SplitDraws> split_;

@@ -224,7 +224,7 @@ Bars share_bars(const StoredResult& result, ArrayPool& pool, const std::string& 
             sobol_of(result).group_names};
   if (series.size() == 1) return bars;
   for (const BarSeries& one : series) bars.series.push_back(one.label);
-  bars.by_first = true;  // as the table
+  bars.by_first = true;  // as in the table
   return bars;
 }
 
@@ -366,7 +366,8 @@ std::string largest_shares(const Result& found, std::span<const double> shares) 
   return text;
 }
 
-/// What to make smaller first: the row with the largest total index and, by size, those that cannot be told from it.
+/// Advice on which errors or groups to make smaller first: the one with the largest total index, then the others whose
+/// intervals overlap with its interval, by decreasing total index.
 std::string advice(const Result& found, std::size_t r) {
   const auto& ST = found.aggregated.ST;
   const std::vector<std::size_t> order = by_size(ST.value.row(r));

@@ -225,7 +225,7 @@ std::optional<StudyResult> run_study_of_kind(const StudyRun& run) {
   return StudyResult{std::move(found), std::nullopt, {}};
 }
 
-/// A panel of which one unit is solved at some poses, to estimate the time of a run.
+/// A panel for estimating the time of a run: one of its units is solved at some poses.
 struct Trial {
   Trial(const Study& study, const Model& model, const PoseSet& poses)
       : plan(study, poses),

@@ -124,8 +124,8 @@ std::string joined_names(const Result& found, std::span<const std::size_t> desig
   return some_names(names, kMost) + (numbers && !found.unit(0).empty() ? " " + found.unit(0) : "");
 }
 
-/// A clause on the designs that equal the best one or are not told apart from it: "; not told apart from it: 490, 500
-/// mm". If draws show that all other designs are worse, the clause says so. Otherwise empty.
+/// A clause on the designs that equal the best one or cannot be distinguished from it: "; not told apart from it: 490,
+/// 500 mm". If draws show that all other designs are worse, the clause says so. Otherwise empty.
 std::string near_best_clause(const Result& found, std::size_t q) {
   std::string text;
   for (const auto& [verdict, words] :
@@ -330,7 +330,7 @@ bool narrows(const StoredResult& result, const Result& found, std::size_t q) {
          });
 }
 
-/// The keys whose smallest or largest number in the sweep the design has.
+/// The keys for which the design has the smallest or the largest number in the sweep.
 std::vector<std::string> keys_at_an_end(const Result& found, std::size_t design) {
   std::vector<std::string> names;
   for (std::size_t k = 0; k < found.keys.size(); ++k) {

@@ -42,17 +42,18 @@ struct Result {
   /// Unit of each figure of merit, such as "%" or "mm"; empty if it has none.
   Array<std::string, axis::Quantity> quantity_unit;
   Array<std::uint8_t, axis::Quantity> most_is_best;  ///< 1 if a larger value is better, otherwise 0
-  /// 1 if all designs judge the same machines, so that intervals of changes are computed from the pairs of verdicts on
-  /// a machine; otherwise 0.
+  /// 1 if all designs judge the same machines, so that intervals of changes are computed from pairs of verdicts on the
+  /// same machine; otherwise 0.
   Array<std::uint8_t, axis::Quantity> is_paired;
   Numbers merit;        ///< figures of merit
   Numbers low;          ///< lower ends of the intervals of the figures of merit; NaN without an interval
   Numbers high;         ///< upper ends of the intervals of the figures of merit
-  Numbers change;       ///< figure of merit minus that of the first design
+  Numbers change;       ///< figure of merit minus that of the first design; NaN for the first design
   Numbers change_low;   ///< lower ends of the intervals of changes
   Numbers change_high;  ///< upper ends of the intervals of changes
-  /// Figure of merit minus that of the best design (best_design()). Each interval of these changes has the confidence
-  /// level on its own, and does not take into account that the best design was chosen by the same numbers.
+  /// Figure of merit minus that of the best design (best_design()); NaN for the best design. Each interval of these
+  /// changes has the confidence level on its own, and does not take into account that the best design was chosen by the
+  /// same numbers.
   Numbers from_best;
   Numbers from_best_low;   ///< lower ends of the intervals of `from_best`
   Numbers from_best_high;  ///< upper ends of the intervals of `from_best`
@@ -73,7 +74,8 @@ std::string design_name(const Result& found, std::size_t design);
 /// The last part of a key's name; the whole name if another key has the same last part.
 std::string short_key(const Result& found, std::size_t key);
 
-/// The design with the best value of a figure of merit, the first of equal ones; none if all values are NaN.
+/// The design with the best value of a figure of merit; the first if several have this value. None if all values are
+/// NaN.
 std::optional<std::size_t> best_design(const Result& found, std::size_t quantity);
 
 /// The sweep in a stored result. Precondition: the result is of kind `sweep`.

@@ -29,8 +29,8 @@ std::vector<bool> good_machines(const TriedMachines& tried, const DecidingPoses&
 }
 
 /// The share of good machines after a change, by regression on the known yield, with its standard error by chance. The
-/// sliders of the page compute the same: one is added to each of the four counts of machines that are good before,
-/// after, at both or never.
+/// regression adds one to each of the counts of machines that are good only before, only after, both times, and never.
+/// The sliders of the page compute the same.
 PredictedChange after(std::string change, const std::vector<bool>& now, const std::vector<bool>& then, double yield) {
   const auto machines = static_cast<double>(now.size());
   const auto good_now = static_cast<double>(std::ranges::count(now, true));
@@ -46,7 +46,7 @@ PredictedChange after(std::string change, const std::vector<bool>& now, const st
           std::sqrt(std::max(0.0, rest) / all)};
 }
 
-/// The vectors less their means over the machines that are solved.
+/// The vectors minus their means over the machines that are solved.
 Rows without_means(Rows rows) {
   for (std::size_t row = 0; row < rows.length<axis::VectorRow>(); ++row) {
     double sum = 0.0;
@@ -111,7 +111,7 @@ std::vector<PredictedChange> single_changes(std::span<const SizedErrors> errors,
 
 std::string changes_text(std::span<const PredictedChange> changes, double yield, double quantile) {
   constexpr std::size_t kMost = 4;
-  constexpr double kNotable = 0.001;  // a machine among as many as the prediction uses
+  constexpr double kNotable = 0.001;  // one machine in 1000; a prediction uses no more machines
   std::string text;
   double chance = 0.0;
   for (const PredictedChange& one : changes.first(std::min(kMost, changes.size()))) {

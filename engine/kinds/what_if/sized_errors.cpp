@@ -37,9 +37,9 @@ std::vector<WhatIfSize> sizes_of(const Feature& feature) {
   return sizes;
 }
 
-/// Adds the errors of features that scatter in their tolerance zones to `list`, but not those whose sizes the study
-/// sets otherwise. Features of the same name in several limbs are joined. Returns whether each error of the plan was
-/// added.
+/// Adds to `list` the errors of features that scatter in their tolerance zones. Leaves out errors to which the study
+/// gives another distribution, and errors that machines draw anew at each pose. Features of the same name in several
+/// limbs are joined. Returns whether each error of the plan was added.
 std::vector<bool> add_features(const Study& study, const Plan& plan, std::vector<SizedErrors>& list) {
   const std::vector<std::optional<Distribution>> by_zones = distributions_by_zones(study);
   std::vector<bool> taken(plan.factors().size(), false);

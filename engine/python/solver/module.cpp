@@ -59,11 +59,11 @@ void warn(const std::string& text) {
   if (PyErr_WarnEx(warning.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
 }
 
-/// The name of an attribute of the class PoesyWarning: the set of the warnings that warn_once() already gave.
+/// The attribute of the class PoesyWarning that holds the set of the warnings that warn_once() already gave.
 constexpr char kAsked[] = "_asked";
 
 /// Gives a warning of what looks like a mistake in a mechanism, once in a process. Warnings that differ only in their
-/// numbers are taken for the same, because an optimiser makes the mechanism with other numbers in each call.
+/// numbers count as the same warning, because an optimiser makes the mechanism with different numbers in each call.
 void warn_once(const std::string& mechanism, const std::string& doubt) {
   std::string words = doubt;
   std::erase_if(words, [](char c) { return (c >= '0' && c <= '9') || c == '.' || c == '-'; });

@@ -77,8 +77,8 @@ Bars bars_of(const Comparison& compared, ArrayPool& pool) {
   return bars;
 }
 
-/// A scatter plot of the first quantity that plots its values in result A against those in result B. Precondition: for
-/// each option the quantity has the same unit for all items.
+/// A scatter plot of the first quantity: its values in result A (horizontal) and in result B (vertical). Precondition:
+/// for each option the quantity has the same unit for all items.
 Scatter scatter_of(const Comparison& compared, ArrayPool& pool) {
   const ComparableQuantity& a = compared.a.quantities.front();
   Scatter scatter{{{compared.a.option_word, compared.a.options}},
@@ -171,7 +171,7 @@ Table totals_table(const Comparison& compared) {
 }
 
 /// The clause of a caption that describes the order of bars. If the items of some quantity have different units, the
-/// clause also warns that their values do not compare. Empty if items are not ranked.
+/// clause also warns that their values cannot be compared. Empty if items are not ranked.
 std::string order_of(const Comparable& a) {
   const auto differ = [](const ComparableQuantity& quantity) {
     return std::ranges::any_of(quantity.units, [](const std::vector<std::string>& units) {

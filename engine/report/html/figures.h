@@ -218,7 +218,7 @@ struct WhatIf {
   /// Estimated error of a linearly predicted component if all sizes of errors change by 100 %, as a share of its limit.
   /// The error of smaller changes is proportional to the change.
   double linear_error = 0.0;
-  /// Share of machines that the prediction takes for good although the study rejects them at a pose that is not in
+  /// Share of machines that the prediction judges to be good although the study rejects them at a pose that is not in
   /// `components`, or although they cannot be solved at other sizes of errors.
   double missed = 0.0;
   double other_costs = 0.0;  ///< cost of the parts that have no slider

@@ -13,8 +13,8 @@
 namespace poesy {
 namespace {
 
-/// The decision on a yield in words, before a sentence: "FAIL, 95 % are asked for: ". Empty if the study asks for no
-/// yield.
+/// The decision on a yield in words, which precede a sentence: "FAIL, 95 % are asked for: ". Empty if the study asks
+/// for no yield.
 std::string decision_text(const YieldVerdict& yield) {
   const std::string_view word = verdict_word(yield.decision);
   return word.empty() ? "" : fmt::format("{}, {} are asked for: ", word, percent_text(yield.asked));

@@ -46,7 +46,7 @@ bool mixed_units(const std::vector<NamedUnit>& things);  ///< Returns true if th
 /// The responses and poses that the figures of a result show. They are limited so that a report stays small.
 struct ShownCells {
   /// If the figures of all responses would have more values than this, the responses outside StoredResult::headline are
-  /// left out, and if the others still have too many values (kMost, kMostInLayer), also poses.
+  /// left out. If the others still have too many values (kMost, kMostInLayer), poses are left out as well.
   static constexpr std::size_t kMostWithAllResponses = 300'000;
   static constexpr std::size_t kMost = 600'000;         ///< The largest number of values of all shown responses.
   static constexpr std::size_t kMostInLayer = 400'000;  ///< The largest number of values of one response.

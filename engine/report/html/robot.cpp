@@ -261,7 +261,7 @@ void add_motions(const StoredResult& result, const std::vector<RobotPose>& poses
   robot.exaggeration = rounded_down(kShownMotion * kSketchHeight / (robot.scale * kMillimetres) / largest);
 }
 
-/// Returns true if errors have shares of their own. Errors that are ranked as a whole with others do not.
+/// Returns true if each error has a share of its own. Errors that are ranked in groups or parts have none.
 bool has_own_shares(std::span<const RobotError> errors, const ErrorShares& shares) {
   return shares.joined.empty() && has_shares({errors.begin(), errors.end()});
 }
@@ -305,7 +305,7 @@ std::string own_words(const StoredResult& result, std::size_t error) {
 }
 
 /// A table of the errors with their places, with the descriptions that the mechanism's file gives them, and with their
-/// shares, if there are any and if they are of single errors.
+/// shares if has_own_shares() is true.
 Table errors_table(const StoredResult& result, const Sketch& sketch, std::span<const RobotError> errors,
                    const ErrorShares& shares) {
   Table table{.name = "where_errors_are",

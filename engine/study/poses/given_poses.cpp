@@ -51,8 +51,8 @@ std::function<std::vector<double>(double time)> path_of(const Trajectory& trajec
   };
 }
 
-/// A point as text. as_in_file: true: values are in SI, and angles also in degrees: "z = 0.5 m, beta = 20 rad = 1145.92
-/// deg"; false: values are in the units that results show.
+/// A point as text. If `as_in_file`, values are in SI, and angles also in degrees: "z = 0.5 m, beta = 20 rad = 1145.92
+/// deg". Otherwise values are in the units that results show.
 std::string point_text(std::span<const double> point, const std::vector<PoseCoordinate>& coordinates, bool as_in_file) {
   std::string text;
   for (std::size_t c = 0; c < point.size(); ++c) {

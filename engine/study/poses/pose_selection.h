@@ -186,10 +186,10 @@ using WatchSearch = std::function<bool(const PoseSearch&)>;
 /// search gives up after max(100 000, 100 count) candidates, or after 50 000 candidates in a row without a feasible
 /// one. For a boundary see boundary_poses(). With grid_counts, all points are examined. Without them, a grid search
 /// gives up before a grid with more than max(100 000, 100 count) points. It also gives up after 100 000 candidates in
-/// all grids if, at their share of feasible points, the largest such grid would give less than a quarter of the poses.
-/// A search without grid_counts also gives up if 3000 or more candidates (of one grid) are examined and all are out of
-/// reach. Throws InputError at count_place if poses of the boundary coincide up to rounding. Throws InputError for the
-/// first pose of a file or a trajectory that does not exist, is out of reach or has a condition number above
+/// all grids if so few of them are feasible that a grid of this largest size would give less than a quarter of the
+/// poses. A search without grid_counts also gives up if 3000 or more candidates (of one grid) are examined and all are
+/// out of reach. Throws InputError at count_place if poses of the boundary coincide up to rounding. Throws InputError
+/// for the first pose of a file or a trajectory that does not exist, is out of reach or has a condition number above
 /// max_condition: at the line of the file if the poses are the points of a file, otherwise at the study's trajectory.
 SelectedPoses select_poses(const PoseSelection& selection, const Model& model);
 
