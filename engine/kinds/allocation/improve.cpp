@@ -44,12 +44,14 @@ std::vector<std::uint32_t> machines_of_largest_load(const SearchProblem& problem
 /// A limit on one weighted sum of T^2 over the parts, which replaces all limits. At the present tolerances, the
 /// contribution of a part to this sum is proportional to the part's score among the machines with the largest loads. If
 /// the score is not significant, the contribution is given by `shares` [parts], the parts' shares in the mean squares.
-ToleranceLimits gradient_limit(const SearchProblem& problem, const ToleranceDesign& design,
-                               std::span<const double> shares) {
+/// None if no score is positive, because too few machines are screened.
+std::optional<ToleranceLimits> gradient_limit(const SearchProblem& problem, const ToleranceDesign& design,
+                                              std::span<const double> shares) {
   const auto [scores, is_sure] = part_scores(problem, design, machines_of_largest_load(problem, design));
   const std::vector<double>& tolerance = design.candidate.point.tolerance;
   double all = 0.0;
   for (const double score : scores) all += std::max(0.0, score);
+  if (all <= 0.0) return std::nullopt;
   ToleranceLimits limit{.parts = problem.programme.size(), .effects = {}, .room = {1.0}};
   for (std::size_t i = 0; i < limit.parts; ++i) {
     const double size = tolerance[i] * tolerance[i];
@@ -94,7 +96,8 @@ ToleranceDesign improve(const SearchProblem& problem, const Linearisation& linea
   bool better = false;
   for (std::size_t step = 0; step < kMaxGradientSteps; ++step) {
     const std::vector<double> shares = shares_by_multipliers(limits, from.candidate);
-    auto next = fit_gradient(problem, from, gradient_limit(problem, from, shares));
+    const std::optional<ToleranceLimits> limit = gradient_limit(problem, from, shares);
+    auto next = limit ? fit_gradient(problem, from, *limit) : std::nullopt;
     if (!next) break;
     from = *std::move(next);
     better = true;
