@@ -154,6 +154,19 @@ class Sobol(ResumptionTest):
             self.assertEqual(file["sobol/S1"].shape[1], 3)
             self.assertEqual(file["sobol/S1"].dims[1].keys(), ["group"])
 
+    def test_groups_with_errors_correlated_across_them_are_summarised_by_shapley_effects(self):
+        correlated = '[[errors.correlated]]\nfactors = ["delta_1_1_y", "epsilon_3_0_y"]\ncorrelation = [[1, 0.5], [0.5, 1]]\n'
+        study = self.small().replace("[analysis]\n", correlated + "[analysis]\n")
+        self.run_study(study + 'shapley = true\ngroups = { hinge = ["delta_1_*"], single = "epsilon_3_0_y" }\n')
+        with h5py.File(self.folder / "out.h5") as file:
+            self.assertEqual(list(numpy.isnan(file["sobol/aggregated/ST"][0])), [True, True, False])
+        self.succeeds("report", "out.h5", "-o", "report.html")
+        page = (self.folder / "report.html").read_text(encoding="utf-8")
+        self.assertRegex(page, r"divided evenly \(Shapley\), the largest shares of the variance of linear_deformation are made "
+                               r"by others \(\d+ %\), \w+ \(\S+ %\), \w+ \(\S+ %\)\.")
+        self.assertIn("interval of the Shapley effect of others is", page)
+        self.assertIn("Make the errors of others smaller first.", page)
+
     def test_a_solve_is_replayed(self):
         self.run_study(self.small())
         self.assertIn("solved as in the run", self.succeeds("replay", "out.h5", "all", 2, 17))

@@ -75,7 +75,7 @@ std::string unsolved_text(const StoredResult& result) {
   if (first == found.unsolved_pose.end()) return {};
   const auto [z, k] = found.unsolved_pose.positions(static_cast<std::size_t>(first - found.unsolved_pose.begin()));
   return fmt::format(
-      "{} of the {} combinations of signs that were tried cannot be assembled, so worst cases are of the others; the "
+      "{} of the {} combinations of signs that were tried have no solution, so worst cases are of the others; the "
       "first: {} of {}, {}, with {}",
       count_text(sum(found.unsolved_corners)), count_text(sum(found.corners)), found.size_names[z], found.subsets[k],
       place_text(result, static_cast<std::size_t>(*first)), corner_text(result, found.unsolved_signs.row(z, k)));

@@ -366,22 +366,30 @@ std::string largest_shares(const Result& found, std::span<const double> shares) 
   return text;
 }
 
-/// Advice on which errors or groups to make smaller first: the one with the largest total index, then the others whose
-/// intervals overlap with its interval, by decreasing total index.
-std::string advice(const Result& found, std::size_t r) {
+/// The shares that the summary states: total indices or, if a group has none because its errors are correlated with
+/// errors of other groups, Shapley effects.
+const Shares<axis::Response, axis::ErrorGroup>& summarised(const Result& found, std::size_t r) {
   const auto& ST = found.aggregated.ST;
-  const std::vector<std::size_t> order = by_size(ST.value.row(r));
-  std::vector<std::string> names;
-  for (const std::size_t g : order) {
-    if (!(ST.ci_high(r, g) < ST.ci_low(r, order.front()))) names.push_back(found.group_names[g]);
-  }
-  const std::string what = (found.joined ? "the errors of " : "") + some_names(names);
-  return fmt::format("Make {} smaller first{}; what has a small total index may be set to its mean.", what,
-                     names.size() > 1 ? ", whose intervals do not tell them apart" : "");
+  return found.Sh.empty() || !std::isnan(sum_of(ST.value.row(r))) ? ST : found.Sh;
 }
 
-/// The summary at the top of the report, for the response by which errors are ranked. It states total indices, and
-/// Shapley effects if there are any.
+/// Advice on which errors or groups to make smaller first: the one with the largest share, then the others whose
+/// intervals overlap with its interval, by decreasing share. total: whether the shares are total indices.
+std::string advice(const Result& found, const Shares<axis::Response, axis::ErrorGroup>& shares, std::size_t r,
+                   bool total) {
+  const std::vector<std::size_t> order = by_size(shares.value.row(r));
+  std::vector<std::string> names;
+  for (const std::size_t g : order) {
+    if (!(shares.ci_high(r, g) < shares.ci_low(r, order.front()))) names.push_back(found.group_names[g]);
+  }
+  const std::string what = (found.joined ? "the errors of " : "") + some_names(names);
+  return fmt::format("Make {} smaller first{}{}.", what,
+                     names.size() > 1 ? ", whose intervals do not tell them apart" : "",
+                     total ? "; what has a small total index may be set to its mean" : "");
+}
+
+/// The summary at the top of the report, for the response by which errors are ranked. It states summarised() shares,
+/// and Shapley effects if there are any.
 Answer answer(const StoredResult& result) {
   constexpr double kWide = 0.2;
   const Result& found = sobol_of(result);
@@ -389,15 +397,18 @@ Answer answer(const StoredResult& result) {
   const std::size_t r = response_named(result, default_ranking(result));
   const std::string& response = result.responses[r].name;
   if (!varies(result, r)) return {{"Answer", constant_text(result.responses[r]) + "."}};
-  const auto& [conf_level, S1, ST] = found.aggregated;
-  const std::size_t top = by_size(ST.value.row(r)).front();
-  Answer lines{{"Answer", fmt::format("With all interactions the largest shares of the variance of {} are made by {}.",
-                                      response, largest_shares(found, ST.value.row(r)))}};
-  if (!found.Sh.empty()) {
+  const auto& shares = summarised(found, r);
+  const bool total = &shares != &found.Sh;
+  const std::size_t top = by_size(shares.value.row(r)).front();
+  Answer lines{{"Answer", fmt::format("{} the largest shares of the variance of {} are made by {}.",
+                                      total ? "With all interactions"
+                                            : "If what several make together is divided evenly (Shapley),",
+                                      response, largest_shares(found, shares.value.row(r)))}};
+  if (total && !found.Sh.empty()) {
     lines.emplace_back("Divided", fmt::format("What several make together divided evenly (Shapley): {}.",
                                               largest_shares(found, found.Sh.value.row(r))));
   }
-  const double alone = sum_of(S1.value.row(r));
+  const double alone = sum_of(found.aggregated.S1.value.row(r));
   if (!std::isnan(alone)) {
     lines.emplace_back("Alone or together",
                        fmt::format("{} of the variance is made by single {}s; what is missing from 100 % needs several "
@@ -405,15 +416,16 @@ Answer answer(const StoredResult& result) {
                                    percent_text(alone), word(found),
                                    found.without_sign(r) != 0 ? ", as it must where a response has no sign" : ""));
   }
-  const double low = ST.ci_low(r, top);
-  const double high = ST.ci_high(r, top);
-  lines.emplace_back("How sure",
-                     fmt::format("The {} interval of the total index of {} is {} to {}.", percent_text(conf_level),
-                                 found.group_names[top], percent_text(low), percent_text(high)));
-  const bool wide = !(high - low <= 2.0 * kWide * ST.value(r, top));
+  const double low = shares.ci_low(r, top);
+  const double high = shares.ci_high(r, top);
+  lines.emplace_back(
+      "How sure", fmt::format("The {} interval of the {} of {} is {} to {}.", percent_text(found.aggregated.conf_level),
+                              total ? "total index" : "Shapley effect", found.group_names[top], percent_text(low),
+                              percent_text(high)));
+  const bool wide = !(high - low <= 2.0 * kWide * shares.value(r, top));
   lines.emplace_back("What to do",
                      wide ? "Take more samples before the order of the largest is relied on: their intervals are wide."
-                          : advice(found, r));
+                          : advice(found, shares, r, total));
   return lines;
 }
 

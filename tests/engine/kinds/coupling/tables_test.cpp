@@ -85,10 +85,9 @@ TEST(CouplingTable, NamesCornersThatCannotBeAssembled) {
   found.unsolved_corners = {{1, 3, 4}, {0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2, 0}};
   found.unsolved_pose = {{1, 3}, {-1, -1, 0}};
   found.unsolved_signs = {{1, 3, 2}, {0, 0, 0, 0, -1, -1}};
-  EXPECT_EQ(
-      coupling_tables(result).back().notes[5],
-      "3 of the 48 combinations of signs that were tried cannot be assembled, so worst cases are of the others; the "
-      "first: 0.1 mm of FS+T, pose 0 (z -300 mm, gamma 0 deg), with -a, -b");
+  EXPECT_EQ(coupling_tables(result).back().notes[5],
+            "3 of the 48 combinations of signs that were tried have no solution, so worst cases are of the others; the "
+            "first: 0.1 mm of FS+T, pose 0 (z -300 mm, gamma 0 deg), with -a, -b");
 }
 
 TEST(CouplingTable, SaysWherePosesAreLeftOut) {
