@@ -72,7 +72,8 @@ const Group<Result> kAllocation{
       Presence::where_computed},
      {"stage_tolerance", &Result::stage_tolerance, kPartUnit, "T of each part after each step on the way"},
      {"multiplier", &Result::multiplier, kCostPerResponse,
-      "What one unit more of the limit at this pose alone would save; NaN for a response without a limit"},
+      "In the optimisation with limits on root mean squares, what one unit more of the limit at this pose alone would "
+      "save; NaN for a response without a limit"},
      {"limit_use", &Result::limit_use, "1",
       "Predicted root mean square over what the tightest limit allows it; NaN likewise"},
      {"fixed_share", &Result::fixed_share, "1",
@@ -82,8 +83,13 @@ const Group<Result> kAllocation{
       Presence::where_computed},
      {"limit", &Result::limit, kResponseUnit, "Limit of the response; NaN for none"},
      {"saving", &Result::saving, kCostUnit,
-      "What a limit wider by one percent at all poses would save, to first order; NaN for a response without a "
-      "limit"},
+      "What a limit wider by one percent at all poses would save at the same yield, to first order; NaN for a response "
+      "without a limit, and if no machine of the certificate is near the limits"},
+     {"deciding_share", &Result::deciding_share, "1",
+      "Share of the certificate's machines near the limits (largest ratio of a response to its limit from 0.9 to 1.1) "
+      "whose largest ratio is that of this response at this pose; a limit that is judged from several poses together "
+      "counts evenly at all; NaN as for /allocation/saving",
+      Presence::where_computed},
      {"limit_from", &Result::limit_from, kResponseUnit,
       "Lower end of the limit, minus infinity for none, NaN for a response without a limit; where a file has it, "
       "/allocation/limit of a limit that is not on the magnitude is the least distance over the poses from the "
@@ -341,12 +347,15 @@ CsvTable limit_table(const StoredResult& result) {
                              }});
   };
   if (!found.fixed_share.empty()) table.columns.push_back(field_column("fixed_share", row("fixed_share"), found));
+  if (!found.deciding_share.empty()) {
+    table.columns.push_back({"deciding_share", [&found](std::size_t r) { return found.decides(r); }});
+  }
   add_largest("limit_use", found.limit_use);
   add_largest("multiplier", found.multiplier);
   return table;
 }
 
-/// A CSV table with the use of each limit at each pose, and the limit's multiplier at this pose.
+/// A CSV table with the use of each limit at each pose, the limit's multiplier at this pose, and how often it decides.
 CsvTable pose_use_table(const StoredResult& result) {
   const Result& found = allocation_of(result);
   CsvTable table = lines_of_poses(result, "allocation_poses");
@@ -355,6 +364,8 @@ CsvTable pose_use_table(const StoredResult& result) {
     table.columns.push_back(list_column("limit_use_" + response.name, found.limit_use.row(r)));
     table.columns.push_back(
         list_column(with_unit("multiplier_" + response.name, "cost/" + response.unit), found.multiplier.row(r)));
+    if (found.deciding_share.empty()) continue;
+    table.columns.push_back(list_column("deciding_share_" + response.name, found.deciding_share.row(r)));
   }
   return table;
 }

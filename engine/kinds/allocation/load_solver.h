@@ -100,7 +100,7 @@ class LoadSolver : protected UnitSolver {
           values_over_poses(k, b, count)[pose.value] = load;
           continue;
         }
-        loads[b] = std::max(loads[b], load);
+        raise(loads[b], load, b, k);
         if (load > 1.0) beyond[k * count + b] = 1;
       }
     }
@@ -117,15 +117,24 @@ class LoadSolver : protected UnitSolver {
       if (!limits_.is_over_poses(k)) continue;
       for (std::size_t b = 0; b < count; ++b) {
         const double load = limits_.load_over_poses(k, values_over_poses(k, b, count));
-        loads[b] = std::max(loads[b], load);
+        raise(loads[b], load, b, k);
         if (load > 1.0) beyond[k * count + b] = 1;
       }
     }
   }
 
   const RelativeLimits& limits_;  ///< limits of the study
+  /// [machines] The limit by which add_pose() or end_poses() last raised the load of the machine.
+  std::vector<std::size_t> raised_by_ = std::vector<std::size_t>(kMachinesOfPiece);
 
  private:
+  /// Raises the load of a machine to that under limit k, if this is larger.
+  void raise(double& load, double of_limit, std::size_t machine, std::size_t k) {
+    if (!(of_limit > load)) return;
+    load = of_limit;
+    raised_by_[machine] = k;
+  }
+
   /// [poses] The values that were recorded for a machine under limit k. count: number of machines in the piece of work.
   std::span<double> values_over_poses(std::size_t k, std::size_t machine, std::size_t count) {
     const std::size_t poses = plan_->poses().size();

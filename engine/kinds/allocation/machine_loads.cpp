@@ -1,6 +1,8 @@
 #include "engine/kinds/allocation/machine_loads.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <limits>
 #include <string_view>
 
@@ -32,6 +34,7 @@ struct LoadSums : MachineLoads {
     solves.resize(poses);
     failed.resize(poses);
     beyond.resize(limits);
+    near = Array<std::uint64_t, axis::Limit, axis::Pose>({limits, poses});
   }
 
   void add(std::size_t, const LoadSums& later) {
@@ -39,6 +42,7 @@ struct LoadSums : MachineLoads {
     merge_each(solves, later.solves);
     merge_each(failed, later.failed);
     for (std::size_t k = 0; k < beyond.size(); ++k) beyond[k] += later.beyond[k];
+    std::ranges::transform(near, later.near, near.begin(), std::plus());
     unsolved += later.unsolved;
   }
 
@@ -50,6 +54,7 @@ struct LoadSums : MachineLoads {
     ends_state(archive, solves, failed, end - first, some ? machines->number(first) : 0,
                some ? machines->number(end - 1) + 1 : 0);
     for (std::uint64_t& of_limit : beyond) archive.number(of_limit, end - first);
+    for (std::uint64_t& of_limit : near) archive.number(of_limit, end - first);
     archive.number(unsolved, end - first);
   }
 };
@@ -73,13 +78,17 @@ class LoadEvaluator : private LoadSolver {
     missing_.assign(count, 0);
     beyond_.assign(limits_.size() * count, 0);
     begin_poses(count);
+    deciding_.assign(count, {});
     for (std::size_t m = 0; m < poses; ++m) add(m, found);
-    end_poses(found.load, beyond_);
+    add_over_poses(found);
     for (std::size_t b = 0; b < count; ++b) {
       if (missing_[b] == 0) continue;
       if (found.load[b] <= 1.0) ++found.unsolved;
       found.load[b] = std::numeric_limits<double>::infinity();
       for (std::size_t k = 0; k < limits_.size(); ++k) beyond_[k * count + b] = 1;
+    }
+    for (std::size_t b = 0; b < count; ++b) {
+      if (std::abs(found.load[b] - 1.0) <= kNearLimit) ++found.near(deciding_[b].limit, deciding_[b].pose);
     }
     for (std::size_t k = 0; k < limits_.size(); ++k) {
       const auto of_limit = std::span(beyond_).subspan(k * count, count);
@@ -94,15 +103,34 @@ class LoadEvaluator : private LoadSolver {
     draw_per_pose(PoseIndex(m), numbers_);
     const UnitOutcomes outcomes = add_pose(PoseIndex(m), at_pose_, missing_, beyond_);
     for (std::size_t b = 0; b < at_pose_.size(); ++b) {
-      found.load[b] = std::max(found.load[b], at_pose_[b]);
+      if (at_pose_[b] > found.load[b]) {
+        found.load[b] = at_pose_[b];
+        deciding_[b] = {raised_by_[b], m};
+      }
       found.solves[m].add(outcomes.status[b], outcomes.iterations[b]);
       found.failed[m].add(SampleIndex(numbers_[b]), outcomes.status[b]);
     }
   }
 
+  void add_over_poses(LoadSums& found) {
+    const std::size_t none = limits_.size();
+    std::ranges::fill(raised_by_, none);
+    end_poses(found.load, beyond_);
+    for (std::size_t b = 0; b < found.load.size(); ++b) {
+      if (raised_by_[b] != none) deciding_[b] = {raised_by_[b], 0};
+    }
+  }
+
+  /// The limit and the pose that a load belongs to.
+  struct Deciding {
+    std::size_t limit = 0;
+    std::size_t pose = 0;
+  };
+
   const Machines& machines_;
   std::vector<std::size_t> numbers_;   ///< [machines] numbers of the machines
   std::vector<double> at_pose_;        ///< [machines] loads at one pose
+  std::vector<Deciding> deciding_;     ///< [machines] what the load of the machine belongs to
   std::vector<std::uint8_t> missing_;  ///< [machines] 1 if the machine is not solved at some pose
   std::vector<std::uint8_t> beyond_;   ///< [limits x machines] 1 if the limit is broken at some pose
 };

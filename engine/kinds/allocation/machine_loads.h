@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/array.h"
+#include "engine/kinds/allocation/relative_limits.h"
 #include "engine/kinds/machine_calibration.h"
 #include "engine/model/model.h"
 #include "engine/run/result.h"
@@ -14,6 +16,9 @@
 #include "engine/study/study.h"
 
 namespace poesy::allocation {
+
+/// A machine whose load is from 1 - kNearLimit to 1 + kNearLimit counts as near the limits.
+inline constexpr double kNearLimit = 0.1;
 
 /// The loads of machines at given tolerances. The load of a machine is the largest ratio of a response to its limit,
 /// both measured from the centre of the limit (RelativeLimits::load()), over all limits and poses. A machine is good if
@@ -24,6 +29,9 @@ struct MachineLoads {
   std::vector<FailedSamples> failed;  ///< [poses] the first failed solves at each pose
   /// [limits] Number of machines that break the limit, or are not solved, at some pose.
   std::vector<std::uint64_t> beyond;
+  /// Number of machines near the limits (kNearLimit) whose load is that of this limit at this pose. Machines whose load
+  /// is that of a limit judged from several poses together (RelativeLimits::is_over_poses()) are counted at pose 0.
+  Array<std::uint64_t, axis::Limit, axis::Pose> near;
   std::uint64_t unsolved = 0;  ///< number of machines that are rejected only because they were not solved at some pose
 };
 

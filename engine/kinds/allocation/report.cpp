@@ -116,7 +116,7 @@ std::vector<double> rows_of(const Result::AtPoses& values, std::span<const std::
   return list;
 }
 
-/// Adds to the page the section that shows, for each pose, how much of each limit is used and what the limit costs.
+/// Adds to the page the section that shows, for each pose, how much of each limit is used and how often it decides.
 void add_where(const StoredResult& result, Page& page) {
   const Result& found = allocation_of(result);
   const PoseFigures figures(result, cells(result), page);
@@ -132,13 +132,9 @@ void add_where(const StoredResult& result, Page& page) {
   };
   std::vector<HeatLayer> layers{{"use of the limit", "%", add("limit_use", found.limit_use, 0.01)}};
   std::vector<Field> fields{{"use of the limit", "%", layers.front().value, names}};
-  if (has_costs(found)) {
-    Result::AtPoses price = found.multiplier;  // cost saved per display unit of the limit
-    for (std::size_t r = 0; r < result.responses.size(); ++r) {
-      for (double& one : price.row(r)) one *= display(result.responses[r]).si;
-    }
-    layers.push_back({"saved if the limit is one unit wider", "", add("price", price, 1.0)});
-    fields.push_back({layers.back().label, "", layers.back().value, names});
+  if (!found.deciding_share.empty()) {
+    layers.push_back({"machines near the limits that this decides", "%", add("decides", found.deciding_share, 0.01)});
+    fields.push_back({layers.back().label, "%", layers.back().value, names});
   }
   add_figure(page, section, "poses", figures.heat_map(std::move(layers), names, ""),
              "The use of each limit at each pose.");
@@ -190,9 +186,10 @@ std::string largest_parts(const Result& found) {
   return text;
 }
 
-/// Names the limit whose relaxation would save most, and the pose at which it is used most. Empty if no saving is
-/// known.
+/// Names the limit whose relaxation would save most, the pose at which it is used most, and what other limits would
+/// save. Empty if no saving is known.
 std::string tightest_text(const StoredResult& result) {
+  constexpr double kOfNote = 0.1;  // share of the largest saving
   const Result& found = allocation_of(result);
   std::optional<std::size_t> most;
   for (const std::size_t r : limited_responses(found)) {
@@ -202,9 +199,14 @@ std::string tightest_text(const StoredResult& result) {
   const NamedUnit& response = result.responses[*most];
   const std::optional<std::size_t> pose = worst_pose(found.limit_use.row(*most));
   const std::string where = pose ? fmt::format(", used most at {}", place_text(result, *pose)) : std::string();
-  return fmt::format("The limit of {} on {}{}. 1 % wider it saves {} of {}.",
+  std::string others;
+  for (const std::size_t r : limited_responses(found)) {
+    if (r == *most || !(found.saving(r) >= kOfNote * found.saving(*most))) continue;
+    others += fmt::format("; that on {} {}", result.responses[r].name, number_text(found.saving(r), 3));
+  }
+  return fmt::format("The limit of {} on {}{}. 1 % wider it saves {} of {}{}.",
                      response_text(response, found.limit(*most)), response.name, where,
-                     number_text(found.saving(*most), 3), number_text(found.total_cost));
+                     number_text(found.saving(*most), 3), number_text(found.total_cost), others);
 }
 
 /// Sentences that name the errors in no part, because the certificate is valid only for their sizes. Empty if there are

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -210,7 +211,12 @@ struct Result {
   /// the background, errors in no part, noise of measurements, and interactions of errors. Empty in files of version
   /// 0.2.
   Array<double, axis::Response> fixed_share;
-  Array<double, axis::Response> saving;  ///< cost saved if a limit is one percent wider at all poses, to first order
+  /// Cost saved if a limit is one percent wider at all poses, to first order, so that the yield stays the same. NaN
+  /// also if no machine of the certificate is near the limits.
+  Array<double, axis::Response> saving;
+  /// Share of the certificate's machines near the limits whose largest ratio of a response to its limit is that of this
+  /// response at this pose. Empty in files of version 0.2.
+  AtPoses deciding_share;
 
   Aim aim = Aim::least_cost;  ///< what the study optimised
   double total_cost = 0.0;    ///< cost of all parts; NaN if no part has a cost
@@ -246,6 +252,11 @@ struct Result {
   bool has_zones() const { return !zone_feature.empty(); }  ///< Whether some part is a zone of the drawing.
   /// Whether the part is a zone of orientation that the drawing does not need.
   bool is_left_out(std::size_t part) const { return has_zones() && zone_is_needed(part) == 0; }
+  /// The sum of `deciding_share` over the poses, for a response.
+  double decides(std::size_t r) const {
+    const auto shares = deciding_share.row(r);
+    return std::accumulate(shares.begin(), shares.end(), 0.0);
+  }
   std::size_t poses() const { return limit_use.length<axis::Pose>(); }  ///< The number of poses.
   /// How the certificate's solves ended, summed over poses.
   SolveCounts total() const { return total_of(solves.all()); }

@@ -296,13 +296,17 @@ Table use_table(const StoredResult& result) {
   }
   if (has_costs(found)) {
     columns.push_back(cost_column("saving", "1 % wider saves", found.saving));
-    columns.push_back({number_column("price", "saved per unit", "", 1), [&](std::size_t r) {
-                         return number_cell(largest(found.multiplier.row(r)) * display(result.responses[r]).si);
-                       }});
-    std::ranges::move(pose_columns(result, "price", found.multiplier, 1), std::back_inserter(columns));
     table.notes.emplace_back(
-        "1 % wider saves: of the cost, if this limit is wider by 1 % at all poses, to first order; saved per unit: if "
-        "it is one unit wider at one pose alone, the one where that saves most");
+        "1 % wider saves: of the cost, at the same yield, if this limit alone is wider by 1 % at all poses, to first "
+        "order; much wider, a limit saves less for each per cent, because others then decide");
+  }
+  if (!found.deciding_share.empty()) {
+    columns.push_back(
+        {percent_column("decides", "decides"), [&](std::size_t r) { return percent_cell(found.decides(r)); }});
+    std::ranges::move(pose_columns(result, "decides", found.deciding_share, 1), std::back_inserter(columns));
+    table.notes.emplace_back(
+        "decides: share of the fresh machines near the limits, within 10 %, whose largest ratio of a response to its "
+        "limit is under this limit; at pose: where most of them have it");
   }
   for (const std::size_t r : limited_responses(found)) {
     if (std::string note = limit_note(result, r); !note.empty()) table.notes.push_back(std::move(note));

@@ -461,6 +461,7 @@ class Example {
     result.limit_use = {{2, kPoses}, {kNone, kNone, kNone, kNone, 0.25, 0.5, 0.75, 1.0}};
     result.limit = {{2}, {kNone, 3e-5}};
     result.saving = {{2}, {kNone, 0.09}};
+    result.deciding_share = {{2, kPoses}, {kNone, kNone, kNone, kNone, 0.0, 0.25, 0.5, 0.25}};
     result.fixed_share = {{2}, {kNone, 0.25}};
     result.total_cost = 10.0;
     result.lower_bound = 9.995;

@@ -87,7 +87,9 @@ TEST_F(AllocationFile, IsReadBackAsItWas) {
                             &Result::share, &Result::mean_square_share, &Result::coarser_yield}) {
     expect_same(found.*member, written_.*member);
   }
-  for (const auto member : {&Result::multiplier, &Result::limit_use}) expect_same(found.*member, written_.*member);
+  for (const auto member : {&Result::multiplier, &Result::limit_use, &Result::deciding_share}) {
+    expect_same(found.*member, written_.*member);
+  }
   for (const auto member : {&Result::limit, &Result::saving, &Result::fixed_share})
     expect_same(found.*member, written_.*member);
   for (const auto member : {&Result::curve_yield, &Result::curve_factor}) EXPECT_EQ(found.*member, written_.*member);
@@ -223,7 +225,7 @@ TEST_F(AllocationFile, RefusesWrongShapes) {
   }
   EXPECT_GT(datasets.size(), 36u);
   for (const std::string& path : datasets) {
-    const bool large = path.ends_with("multiplier") || path.ends_with("limit_use");
+    const bool large = path.ends_with("multiplier") || path.ends_with("limit_use") || path.ends_with("deciding_share");
     EXPECT_NE(
         problem_with(path, large ? "/allocation/limit" : "/allocation/multiplier").find("the shape it should have"),
         std::string::npos)
@@ -252,12 +254,14 @@ TEST_F(AllocationFile, IsExportedAsTheDrawingHasIt) {
       "grinding,epsilon_1\n"
       "plate,2.5e-05,0.025,7.5e-06,0.0075,2.5e-06,0.0025,3,0.5,0.05,0.125,3,NaN,m,IT7,delta_3\n");
   EXPECT_EQ(csv("allocation_errors"), "factor,mean_square_share\nepsilon_1,0.375\ndelta_1,0.45\n");
-  EXPECT_EQ(csv("allocation_limits"),
-            "response,limit,saving,fixed_share,largest_limit_use,largest_limit_use_pose,largest_multiplier,"
-            "largest_multiplier_pose,unit\nlinear_deformation,3e-05,0.09,0.25,1,3,200000,2,m\n");
-  EXPECT_EQ(csv("allocation_poses"),
-            "pose,limit_use_linear_deformation,multiplier_linear_deformation [cost/m]\n"
-            "0,0.25,0\n1,0.5,0\n2,0.75,200000\n3,1,100000\n");
+  EXPECT_EQ(
+      csv("allocation_limits"),
+      "response,limit,saving,fixed_share,deciding_share,largest_limit_use,largest_limit_use_pose,largest_multiplier,"
+      "largest_multiplier_pose,unit\nlinear_deformation,3e-05,0.09,0.25,1,1,3,200000,2,m\n");
+  EXPECT_EQ(
+      csv("allocation_poses"),
+      "pose,limit_use_linear_deformation,multiplier_linear_deformation [cost/m],deciding_share_linear_deformation\n"
+      "0,0.25,0,0\n1,0.5,0,0.25\n2,0.75,200000,0.5\n3,1,100000,0.25\n");
 }
 
 TEST_F(AllocationFile, IsExportedWithItsWayAndItsCertificate) {

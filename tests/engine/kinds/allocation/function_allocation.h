@@ -33,14 +33,15 @@ inline allocation::StatedCost reciprocal(double a, double b) {
   return cost;
 }
 
-/// An allocation study of a function with the limit |response 0| <= limit.
+/// An allocation study of a function. Each response has the limit |response| <= limit.
 struct FunctionStudy {
-  FunctionStudy(std::size_t errors, ErrorFunction function, double limit, std::size_t machines)
-      : model(errors, {"y"}, std::move(function)), entry{model.description(), nullptr} {
+  FunctionStudy(std::size_t errors, ErrorFunction function, double limit, std::size_t machines,
+                std::vector<std::string> responses = {"y"})
+      : model(errors, responses, std::move(function)), entry{model.description(), nullptr} {
     study = function_study(entry, allocation::kStudy, Distribution::normal(0.05), machines);
     study.analysis.draws = Draws::per_machine;
     study.poses.workspace = {{0.0, 1.0}};  // the text of the certificate's study states the workspace
-    study.analysis.limits = {{0, limit}};
+    for (std::size_t r = 0; r < responses.size(); ++r) study.analysis.limits.push_back({r, limit});
     asked().yield = kThreeSigma;
   }
   allocation::Options& asked() { return asked_of<allocation::Options>(study.analysis); }

@@ -198,21 +198,26 @@ TEST_F(AllocationReport, StatesWhatIsInNoPart) {
 TEST_F(AllocationReport, SaysWhatEachLimitAsksForAndWhere) {
   EXPECT_EQ(text_of(table("allocation_limits"), 100),
             "What each limit asks for, and where\n"
-            "                                         at  1 % wider     saved    at\n"
-            "response            limit  unit  used  pose      saves  per unit  pose\n"
-            "                                  [%]\n"
-            "linear_deformation   0.03  mm     100     3       0.09       200     2\n"
+            "                                         at  1 % wider             at\n"
+            "response            limit  unit  used  pose      saves  decides  pose\n"
+            "                                  [%]                       [%]\n"
+            "linear_deformation   0.03  mm     100     3       0.09      100     2\n"
             "used: the predicted root mean square over what the tightest limit allows it, at the pose where it is\n"
             "largest\n"
             "in no part: share of the mean square at this pose that belongs to no part (background, errors\n"
             "without a part, noise of measurements, interactions of errors)\n"
-            "1 % wider saves: of the cost, if this limit is wider by 1 % at all poses, to first order; saved per\n"
-            "unit: if it is one unit wider at one pose alone, the one where that saves most\n"
+            "1 % wider saves: of the cost, at the same yield, if this limit alone is wider by 1 % at all poses, to\n"
+            "first order; much wider, a limit saves less for each per cent, because others then decide\n"
+            "decides: share of the fresh machines near the limits, within 10 %, whose largest ratio of a response\n"
+            "to its limit is under this limit; at pose: where most of them have it\n"
             "(no room for where, in no part: a wider terminal shows more)\n");
   EXPECT_EQ(column(table("allocation_limits"), "used_place"), Texts{"z -203 mm, beta 21.5 deg, gamma -43 deg"});
-  EXPECT_EQ(column(table("allocation_limits"), "price_place"), Texts{"z -219 mm, beta 14.3 deg, gamma -28.6 deg"});
-  std::ranges::fill(found().multiplier, 0.0);
-  EXPECT_EQ(column(table("allocation_limits"), "price_pose"), Texts{"-"});
+  EXPECT_EQ(column(table("allocation_limits"), "decides_place"), Texts{"z -219 mm, beta 14.3 deg, gamma -28.6 deg"});
+  std::ranges::fill(found().deciding_share, std::nan(""));  // no machine is near the limits
+  EXPECT_EQ(column(table("allocation_limits"), "decides"), Texts{"-"});
+  EXPECT_EQ(column(table("allocation_limits"), "decides_pose"), Texts{"-"});
+  found().deciding_share = {};  // files of version 0.2 have no deciding_share
+  EXPECT_EQ(note_of(table("allocation_limits"), "decides"), "");
 }
 
 TEST_F(AllocationReport, PrintsPlacesWithMinusSigns) {

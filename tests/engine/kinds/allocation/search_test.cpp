@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -240,6 +241,43 @@ TEST(ToleranceSearch, KnowsThatALimitWithRoomDependsOnAPart) {
   EXPECT_EQ(found.tolerance(1), 0.7);
   EXPECT_EQ(found.mean_square_share(1), 0.0);
   EXPECT_EQ(found.bound(1), static_cast<std::uint8_t>(AtBound::upper));
+}
+
+// y = x0 + x1 and z = 0.97 (x0 - x1) have the same limit 1. Both parts cost the same, so x0 and x1 are equally large,
+// and y and z independent, with the standard deviations s and 0.97 s. The density at u of machines whose load is |y| is
+// proportional to exp(-u^2 / 2 s^2) / s, times the probability of |z| < u, and that of |z| in the same way.
+TEST(ToleranceSearch, DividesTheSavingByTheMachinesThatEachLimitDecides) {
+  constexpr double kSecond = 0.97;
+  constexpr std::size_t kMachines = 100'000;
+  const auto sum_and_difference = [](std::span<const double> x, double, std::span<double> y) {
+    y[0] = x[0] + x[1];
+    y[1] = kSecond * (x[0] - x[1]);
+  };
+  FunctionStudy study(2, sum_and_difference, 1.0, kMachines, {"y", "z"});
+  study.asked().yield = 0.99;
+  for (std::size_t i = 0; i < 2; ++i) study.asked().parts.push_back(part_of(i, reciprocal(0.0, 1.0)));
+  const allocation::Result found = study.find();
+  const double s = std::hypot(found.sigma(0), found.sigma(1));
+  const auto near_limits = [](double own, double other) {  // the integral from 0.9 to 1.1 by the midpoint rule
+    constexpr int kSteps = 1000;
+    double sum = 0.0;
+    for (int n = 0; n < kSteps; ++n) {
+      const double u = 0.9 + 0.2 * (n + 0.5) / kSteps;
+      sum += std::exp(-0.5 * u * u / (own * own)) / own * std::erf(u / (other * std::sqrt(2.0)));
+    }
+    return std::sqrt(2.0 / std::numbers::pi) * 0.2 * sum / kSteps;
+  };
+  const double by_y = near_limits(s, kSecond * s);
+  const double by_z = near_limits(kSecond * s, s);
+  const double share = by_z / (by_y + by_z);
+  const double machines = kMachines * (by_y + by_z);
+  EXPECT_GT(share, 0.35);
+  EXPECT_NEAR(found.deciding_share(1, 0), share, 4.0 * std::sqrt(share * (1.0 - share) / machines));  // alpha 6e-5
+  EXPECT_NEAR(found.deciding_share(0, 0) + found.deciding_share(1, 0), 1.0, 1e-12);
+  // All tolerances grow with all limits, so the cost, which is reciprocal, falls by one per cent.
+  EXPECT_NEAR(found.saving(0) + found.saving(1), 0.01 * found.total_cost, 2e-4 * found.total_cost);
+  EXPECT_NEAR(found.saving(1), found.deciding_share(1, 0) * (found.saving(0) + found.saving(1)), 1e-12);
+  EXPECT_EQ(found.multiplier(1, 0), 0.0);  // the root mean square of z is below its limit
 }
 
 TEST(ToleranceSearch, FindsTheSameOnAnyNumberOfThreads) {
