@@ -133,11 +133,8 @@ ExitCode judge_yield(const YieldVerdict& yield, const std::string& more, bool ce
     say(Message::warning, fmt::format("{}: {}, which does not tell whether it is {}; {}", study_path, found,
                                       percent_text(yield.asked), more));
   }
-  if (yield.decision == kept && yield.with_parts && !(yield.with_parts->low >= yield.asked)) {
-    say(Message::warning,
-        fmt::format("{}: the machines keep a yield of {}, but the parts on which errors were measured do not show it; "
-                    "measure more parts, or state a distribution",
-                    study_path, percent_text(yield.asked)));
+  if (const std::string open = open_parts_text(yield); !open.empty()) {
+    say(Message::warning, fmt::format("{}: {}", study_path, open));
   }
   if (yield.decision != not_kept) return kDone;
   say(Message::error,

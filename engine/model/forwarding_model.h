@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "engine/base/contract.h"
@@ -20,7 +21,7 @@ class ForwardingModel : public Model {
     return model_->joint_displacements(pose);
   }
   double condition(std::span<const double> pose) const override { return model_->condition(pose); }
-  bool are_separated(std::span<const double> one, std::span<const double> other) const override {
+  std::optional<bool> are_separated(std::span<const double> one, std::span<const double> other) const override {
     return model_->are_separated(one, other);
   }
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {

@@ -287,9 +287,11 @@ class Model {
   virtual double condition(std::span<const double> pose) const = 0;
 
   /// Returns true if the mechanism cannot move between two poses without passing a singular pose: the equations of
-  /// passive joints and bodies have determinants of different signs. False if this is not known. Preconditions: the
-  /// poses are reachable.
-  virtual bool are_separated(std::span<const double> /*one*/, std::span<const double> /*other*/) const { return false; }
+  /// passive joints and bodies have determinants of different signs. None if this is not known, for example because the
+  /// poses are too far apart. Preconditions: the poses are reachable.
+  virtual std::optional<bool> are_separated(std::span<const double> /*one*/, std::span<const double> /*other*/) const {
+    return std::nullopt;
+  }
 
   /// An evaluator for one thread. The model must outlive it.
   virtual std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const = 0;

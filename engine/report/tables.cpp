@@ -57,7 +57,9 @@ std::string yield_caption(const YieldVerdict& yield) {
   const std::string asked = percent_text(yield.asked);
   switch (yield.decision) {
     case kept:
-      return fmt::format("PASS: the yield is at least {}: {}", asked, found);
+      return fmt::format("PASS{}: the yield is at least {}: {}",
+                         yield.parts_leave_open() ? " for these measured parts, which do not show it of others" : "",
+                         asked, found);
     case not_kept:
       return fmt::format("FAIL: the yield is below {}: {}", asked, found);
     case undecided:
@@ -398,6 +400,14 @@ std::string few_parts_text(const StoredResult& result, double conf_level, double
   if (!(shown < target && target < 1.0 && conf_level < 1.0)) return text;  // because a result file may have any numbers
   return text + fmt::format(", and cannot show {}, which takes {}", percent_text(target),
                             count_text(trials_without_failure(target, conf_level)));
+}
+
+std::string open_parts_text(const YieldVerdict& yield) {
+  if (!yield.parts_leave_open()) return {};
+  return fmt::format(
+      "the machines keep a yield of {}, but the parts on which errors were measured do not show it; "
+      "measure more parts, or state a distribution",
+      percent_text(yield.asked));
 }
 
 std::string judged_text(const LimitVerdicts& verdicts) {

@@ -94,6 +94,10 @@ std::optional<Table> stated_table(const StoredResult& result);
 /// errors are drawn from measured parts.
 std::string few_parts_text(const StoredResult& result, double conf_level, double asked);
 
+/// A warning, as a clause, that measured parts leave the wanted yield open, with advice. Empty if they do not
+/// (YieldVerdict::parts_leave_open()).
+std::string open_parts_text(const YieldVerdict& yield);
+
 /// The statistic of the draws that is judged (Judge), as words that follow PASS or FAIL: " by root mean square". Empty
 /// for an evaluation, which judges each row. Precondition: limits are not judged by the yield.
 std::string judged_text(const LimitVerdicts& verdicts);

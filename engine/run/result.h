@@ -171,6 +171,9 @@ struct YieldVerdict {
   /// parts; NaN if not known.
   std::optional<Interval> with_parts = {};
   SolveCounts solves = {};  ///< solves of the machines at all poses
+
+  /// Whether the machines keep the wanted yield, but the interval `with_parts` does not show it.
+  bool parts_leave_open() const { return decision == Decision::kept && with_parts && !(with_parts->low >= asked); }
 };
 
 /// The verdicts on all limits of a study.

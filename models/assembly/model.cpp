@@ -152,18 +152,35 @@ double condition(const AssemblyModel& model, std::span<const double> pose) {
   return smallest > rounding * values[0] ? values[0] / smallest : std::numeric_limits<double>::infinity();
 }
 
-/// Returns true if two subspaces of the same dimension are almost equal. one, other: orthonormal bases.
+/// Returns true if two subspaces of the same dimension are so near that no direction of one is across the other. one,
+/// other: orthonormal bases.
 static bool are_near(const Matrix& one, const Matrix& other) {
-  constexpr double kLeast = 0.999;  // product of the cosines of the angles between them
+  constexpr double kLeast = 0.5;  // product of the cosines of the angles between them
   return one.cols() == other.cols() && std::abs(linalg::determinant(one.transpose() * other)) > kLeast;
 }
 
-bool are_separated(const AssemblyModel& model, std::span<const double> one, std::span<const double> other) {
-  const auto columns_at = [&](std::span<const double> pose) {
-    return motion_columns(model.assembly, model.at(pose).limbs, Matrix6::Identity());
-  };
-  const Matrix at_one = columns_at(one);
-  const Matrix at_other = columns_at(other);
+/// B (motion_columns()) at a pose, with columns of balls for rotations about the base's axes. None if the axes of a
+/// ball are nearly aligned.
+static std::optional<Matrix> regular_columns(const AssemblyModel& model, std::span<const PassiveBall> balls,
+                                             std::span<const double> pose) {
+  constexpr double kAligned = 1e-3;  // volume that three unit vectors along the axes span
+  Matrix B = motion_columns(model.assembly, model.at(pose).limbs, Matrix6::Identity());
+  for (const PassiveBall& ball : balls) {
+    auto columns = B.middleCols<3>(index(ball.column));
+    const lie::Matrix3<double> axes = columns.middleRows<3>(6 * index(ball.limb));
+    if (std::abs(axes.determinant()) < kAligned) return std::nullopt;
+    columns *= axes.inverse();
+  }
+  return B;
+}
+
+std::optional<bool> are_separated(const AssemblyModel& model, std::span<const PassiveBall> balls,
+                                  std::span<const double> one, std::span<const double> other) {
+  const std::optional<Matrix> first = regular_columns(model, balls, one);
+  const std::optional<Matrix> second = regular_columns(model, balls, other);
+  if (!first || !second) return std::nullopt;
+  const Matrix& at_one = *first;
+  const Matrix& at_other = *second;
   const auto complement = [](const Matrix& columns) {
     constexpr double kIndependent = 1e-9;  // a smaller pivot, relative to the largest, counts as 0
     return linalg::orthogonal_complement(columns, kIndependent);
@@ -172,7 +189,7 @@ bool are_separated(const AssemblyModel& model, std::span<const double> one, std:
   const Matrix idle = complement(at_one.transpose());
   const bool is_known = at_one.cols() + left.cols() == at_one.rows() + idle.cols() &&
                         are_near(left, complement(at_other)) && are_near(idle, complement(at_other.transpose()));
-  if (!is_known) return false;
+  if (!is_known) return std::nullopt;
   const auto determinant = [&](const Matrix& columns) {
     Matrix bordered = Matrix::Zero(columns.rows() + idle.cols(), columns.cols() + left.cols());
     bordered << columns, left, idle.transpose(), Matrix::Zero(idle.cols(), left.cols());

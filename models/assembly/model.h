@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -57,10 +58,19 @@ SolveTrace assembly_trace(const AssemblyModel& model, std::span<const double> po
 /// these columns is rank-deficient to rounding.
 double condition(const AssemblyModel& model, std::span<const double> pose);
 
-/// Returns true if B (motion_columns()) loses rank between two poses. B is bordered by its null spaces at the first
-/// pose (over-constraints and idle freedoms), and the signs of the determinants of the bordered matrices are compared.
-/// False if the null spaces at both poses differ much, because the signs then say nothing.
-bool are_separated(const AssemblyModel& model, std::span<const double> one, std::span<const double> other);
+/// A spherical joint without a drive.
+struct PassiveBall {
+  std::size_t limb;    ///< index of its limb
+  std::size_t column;  ///< index, among the passive joints of all limbs, of the first of its three revolute joints
+};
+
+/// Returns true if B (motion_columns()) loses rank between two poses. The columns of a ball are first replaced by those
+/// of rotations about the base's axes, because its own three axes align in poses that are not singular. B is bordered
+/// by its null spaces at the first pose (over-constraints and idle freedoms), and the signs of the determinants of the
+/// bordered matrices are compared. None if the null spaces at both poses differ much, or if the axes of a ball are
+/// nearly aligned at a pose, because the signs then say nothing.
+std::optional<bool> are_separated(const AssemblyModel& model, std::span<const PassiveBall> balls,
+                                  std::span<const double> one, std::span<const double> other);
 
 /// The largest component of the force in any limb per unit displacement of the end of any limb, at this pose (N/m).
 double largest_stiffness(const AssemblyModel& model, const Nominal& pose);

@@ -66,6 +66,21 @@ void check_names(const Mechanism& mechanism, const std::vector<Response>& respon
   }
 }
 
+/// The passive spherical joints, each of which is three revolute joints of its limb.
+std::vector<assembly::PassiveBall> passive_balls(const Mechanism& mechanism) {
+  std::vector<assembly::PassiveBall> balls;
+  std::size_t column = 0;
+  for (std::size_t e = 0; e < mechanism.limbs.size(); ++e) {
+    std::size_t of_ball = 0;  // joints so far of the present spherical joint
+    for (const Joint& joint : mechanism.limbs[e].joints) {
+      if (!joint.moves() || joint.actuated) continue;
+      if (joint.kind == JointKind::spherical && of_ball++ % 3 == 0) balls.push_back({e, column});
+      ++column;
+    }
+  }
+  return balls;
+}
+
 class BalancedModel final : public TrackedModel {
  public:
   BalancedModel(const MechanismFile& file, Checked found, assembly::Metric metric, chain::Fidelity fidelity)
@@ -87,11 +102,8 @@ class BalancedModel final : public TrackedModel {
   }
 
   double condition(std::span<const double> pose) const override { return assembly::condition(model_, pose); }
-  bool are_separated(std::span<const double> one, std::span<const double> other) const override {
-    // A spherical joint is three revolute ones, whose determinant also changes its sign where two of their axes align.
-    const auto is_spherical = [](const Joint& joint) { return joint.kind == JointKind::spherical; };
-    const auto has_one = [&](const Limb& limb) { return std::ranges::any_of(limb.joints, is_spherical); };
-    return std::ranges::none_of(mechanism().limbs, has_one) && assembly::are_separated(model_, one, other);
+  std::optional<bool> are_separated(std::span<const double> one, std::span<const double> other) const override {
+    return assembly::are_separated(model_, passive_balls(mechanism()), one, other);
   }
 
   std::unique_ptr<Evaluator> evaluator(const SolverOptions& options) const override {

@@ -181,8 +181,12 @@ analysis = {{ kind = "monte-carlo", factors = ["q_1"], samples = 40000, draws = 
 """)
         done = self.poesy("run", "study.toml", "-o", "out.h5", "--quiet")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("PASS", done.stdout.decode())
+        self.assertIn("PASS for these measured parts, which do not show it of others:", " ".join(done.stdout.decode().split()))
         self.assertIn("the parts on which errors were measured do not show it", done.stderr.decode())
+        self.succeeds("report", "out.h5", "-o", "report.html")
+        page = (self.folder / "report.html").read_text(encoding="utf-8")
+        self.assertIn("The machines keep a yield of 85 %, but the parts on which errors were measured do not show it", page)
+        self.assertNotIn("Nothing has to be done", page)
         with h5py.File(self.folder / "out.h5") as file:
             at = list(file["responses/name"].asstr()).index("position")
             mean, deviation = (file["monte_carlo"][name][at, 0] for name in ("mean", "std"))

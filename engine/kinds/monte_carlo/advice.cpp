@@ -145,7 +145,10 @@ std::string advice(const StoredResult& result, std::size_t r, const std::string&
   const bool undecided = has_yield && verdicts->yield->decision == Decision::undecided;
   const bool judged = verdicts && !undecided && !(has_yield && verdicts->yield->decision == Decision::not_asked);
   if (judged && verdicts->passed() && has_yield) {
-    return "Nothing has to be done: as far as it shows, the limits are kept.";
+    std::string open = open_parts_text(*verdicts->yield);
+    if (open.empty()) return "Nothing has to be done: as far as it shows, the limits are kept.";
+    open.front() = 'T';
+    return open + ".";
   }
   if (judged && verdicts->passed()) {
     const bool has_machines = monte_carlo_of(result).machines.has_value();
