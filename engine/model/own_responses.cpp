@@ -19,10 +19,11 @@ std::string terms_text(const OwnResponse& own, const ModelDescription& model) {
   for (std::size_t k = 0; k < own.terms.size(); ++k) {
     const ResponseTerm& term = own.terms[k];
     text += k == 0 ? "" : k + 1 == own.terms.size() ? " and " : ", ";
-    if (term.weighed_in != Dimension::number || term.weight != 1.0) {
+    if (!term.is_inverse && (term.weighed_in != Dimension::number || term.weight != 1.0)) {
       text += readable_text({term.weight, term.weighed_in}) + " times ";
     }
     text += model.responses[term.response].name;
+    if (term.is_inverse) text += " over " + readable_text({1.0 / term.weight, term.weighed_in});
   }
   return text;
 }
@@ -330,6 +331,10 @@ class ModelOfOwn final : public ForwardingModel {
 std::optional<Dimension> dimension_of(const ResponseTerm& term, const ModelDescription& model) {
   const Dimension own = model.responses[term.response].dimension;
   if (term.weighed_in == Dimension::number) return own;
+  if (term.is_inverse) {
+    if (own == Dimension::length) return Dimension::angle;
+    return own == Dimension::moment ? std::optional(Dimension::force) : std::nullopt;
+  }
   switch (own) {
     case Dimension::angle:
     case Dimension::number:

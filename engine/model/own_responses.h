@@ -13,7 +13,8 @@ namespace poesy {
 struct ResponseTerm {
   std::size_t response;  ///< index in the list of the model's responses followed by the user's earlier ones
   double weight = 1.0;   ///< factor by which the response is multiplied, SI
-  Dimension weighed_in = Dimension::number;  ///< dimension of `weight`: number or length
+  Dimension weighed_in = Dimension::number;  ///< dimension of `weight`, or of its inverse: number or length
+  bool is_inverse = false;                   ///< true if `weighed_in` is the dimension of the inverse of `weight`
 };
 
 /// The pose to which a response is relative: the value of the response at this pose, with the same errors, is
@@ -39,7 +40,8 @@ struct OwnResponse {
 
 /// The dimension of a term, which is a response times a weight. A weight without unit keeps the dimension of the
 /// response. If the weight is a length, the product with an angle or a number is a length, and the product with a force
-/// is a moment. None for other products.
+/// is a moment. If the weight is the inverse of a length, the product with a length is an angle, and the product with a
+/// moment a force. None for other products.
 std::optional<Dimension> dimension_of(const ResponseTerm& term, const ModelDescription& model);
 
 /// The description with the user's responses appended to the list of responses, and put first among the responses that

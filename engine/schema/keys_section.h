@@ -56,12 +56,14 @@ class StudyValue {
   /// Reads a list of `size` elements. Throws InputError with this remedy if the list has another number of elements.
   std::vector<StudyValue> list(std::size_t size, std::string_view remedy) const;
 
+  /// Reads `written`, a part of this text, as quantity() reads a whole text. Refuses it with its own words.
+  double quantity_of(const std::string& written, Dimension dimension) const;
+
   /// Throws InputError "NAME PROBLEM; REMEDY" at the value's place.
   [[noreturn]] void fail(std::string_view problem, std::string_view remedy) const;
 
  private:
   [[noreturn]] void wrong_type(std::string_view remedy) const;
-  double quantity_of(const std::string& written, Dimension dimension) const;
   double positive(double value) const;
 
   const toml::node* node_;

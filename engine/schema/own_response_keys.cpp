@@ -38,8 +38,8 @@ const Keys<OwnResponse, Nothing>& response_keys() {
               .value = {.type = "table"},
               .usual = "",
               .example = "{ z = 1, theta_x = \"-20 mm\" }",
-              .meaning = "Responses with signs, each with its weight: a number, or a length "
-                         "that makes an angle a length and a force a moment."},
+              .meaning = "Responses with signs, each with its weight: a number, a length that makes an angle a length "
+                         "and a force a moment, or a number over a length, which does the reverse."},
           Row{.name = "direction",
               .value = {.type = "list of numbers"},
               .usual = "",
@@ -177,11 +177,28 @@ class OwnReader {
     }
   }
 
+  /// Reads a weight with a unit: "20 mm", or "1 / 20 mm".
+  static void read_weight(const StudyValue& value, ResponseTerm& term) {
+    const std::string text(trimmed(value.text()));
+    const std::size_t slash = text.find('/');
+    term.is_inverse = slash != std::string::npos;
+    if (!term.is_inverse) {
+      term.weight = value.quantity(Dimension::length);
+      return;
+    }
+    const std::optional<double> above = parse_number(trimmed(std::string_view(text).substr(0, slash)));
+    if (!above) value.fail("is '" + printable(text) + "', which has no number before the '/'", "write \"1 / 20 mm\"");
+    const double below =
+        value.quantity_of(std::string(trimmed(std::string_view(text).substr(slash + 1))), Dimension::length);
+    if (below == 0.0) value.fail("divides by a length of 0", "write \"1 / 20 mm\"");
+    term.weight = *above / below;
+  }
+
   ResponseTerm read_term(const StudyValue& weight, std::size_t response) const {
     ResponseTerm term{response};
     if (weight.is_text()) {
       term.weighed_in = Dimension::length;
-      term.weight = weight.quantity(Dimension::length);
+      read_weight(weight, term);
     } else {
       term.weight = weight.number();
     }
@@ -191,7 +208,8 @@ class OwnReader {
                   "take its components, or make a norm of it");
     }
     if (!dimension_of(term, model_)) {
-      weight.fail("is a length, and '" + model_.responses[response].name + "' is " +
+      weight.fail((term.is_inverse ? "is a number over a length, and '" : "is a length, and '") +
+                      model_.responses[response].name + "' is " +
                       std::string(with_article(model_.responses[response].dimension)),
                   "weigh it with a number");
     }
@@ -209,7 +227,8 @@ class OwnReader {
       weight.fail(
           "makes " + std::string(with_article(dimension)) + ", but the first term is " +
               std::string(with_article(own.dimension)),
-          "the terms of a sum have one dimension: a length as weight, such as \"20 mm\", makes an angle a length");
+          "the terms of a sum have one dimension: a length as weight, such as \"20 mm\", makes an angle a length, and "
+          "\"1 / 20 mm\" a length an angle");
     }
     if (own.terms.empty()) value.fail("is empty", "give at least one response a weight, e.g. sum = { z = 1 }");
     std::ranges::sort(own.terms, {}, &ResponseTerm::response);
@@ -315,7 +334,9 @@ std::string form_text(const OwnResponse& own, const ModelDescription& model) {
   for (const ResponseTerm& term : own.terms) {
     const std::string& name = model.responses[term.response].name;
     text += text.empty() ? "" : ", ";
-    text += own.is_norm ? in_quotes(name) : name + " = " + exact_value(term.weight, term.weighed_in);
+    text += own.is_norm       ? in_quotes(name)
+            : term.is_inverse ? name + " = " + in_quotes(shortest(term.weight) + " / 1 m")
+                              : name + " = " + exact_value(term.weight, term.weighed_in);
   }
   return own.is_norm ? "norm = [" + text + "]\n" : "sum = { " + text + " }\n";
 }
@@ -336,7 +357,7 @@ StudyTables own_response_tables() {
           {.paths = {"response.sum"},
            .meaning = "'poesy models MECHANISM' lists the responses.",
            .keys = {{.name = "RESPONSE",
-                     .type = "number or length",
+                     .type = "number, length, or number over length",
                      .usual = "it is not in the sum",
                      .meaning = "The weight of a response."}}},
           {.paths = {"response.relative_to"},

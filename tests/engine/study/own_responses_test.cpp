@@ -103,6 +103,23 @@ TEST(OwnResponses, AreInTheResolvedText) {
   EXPECT_EQ(resolved_text(read("")).find("response"), std::string::npos);
 }
 
+// The direction of the line from the origin to the tip, which is 0.4 m long, as an angle.
+TEST(OwnResponses, AreAnglesIfDisplacementsAreDividedByALength) {
+  const Study study = read("[[response]]\nname = \"aim\"\nsum = { tip_x = \"1 / 400 mm\", x = \"-1/0.4 m\" }\n",
+                           "limits = { aim = \"1 mrad\" }\n");
+  const std::vector<double> found = responses_of(study);
+  const ModelDescription& model = study.model();
+  const auto value = [&](std::string_view name) { return found[position_of(model, name)]; };
+  EXPECT_NEAR(value("aim"), (value("tip_x") - value("x")) / 0.4, 1e-17);
+  const Response& aim = model.responses[position_of(model, "aim")];
+  EXPECT_EQ(aim.dimension, Dimension::angle);
+  EXPECT_EQ(aim.description, "sum of x over -400 mm and tip_x over 400 mm, a response of one's own");
+  const std::string text = resolved_text(study);
+  const Study again = study_of_text(text, "again.toml", registry(), StudyUse::run);
+  EXPECT_EQ(resolved_text(again), text);
+  EXPECT_EQ(responses_of(again), found);
+}
+
 TEST(OwnResponses, AreDisplacementsAlongADirection) {
   const Study study = read(
       "[[response]]\nname = \"edge\"\npoint = \"tip\"\ndirection = [3, 0, -4]\n"
@@ -341,6 +358,10 @@ TEST(OwnResponses, AreRefusedWithPlaceAndRemedy) {
   refused(named + "sum = { position = ^1 }\n", {"which has no sign", "norm"});
   refused(named + "sum = { z = ^\"20 mm\" }\n", {"is a length", "weigh it with a number"});
   refused(named + "sum = { z = ^\"20 deg\" }\n", {"response[0].sum.z", "length"});
+  refused(named + "sum = { theta_x = ^\"1 / 20 mm\" }\n", {"is a number over a length", "weigh it with a number"});
+  refused(named + "sum = { z = ^\"1 / L\" }\n", {"cannot be read", "mm"});
+  refused(named + "sum = { z = ^\"L / 20 mm\" }\n", {"'L / 20 mm', which has no number before the '/'", "1 / 20 mm"});
+  refused(named + "sum = { z = ^\"1 / 0 mm\" }\n", {"divides by a length of 0", "1 / 20 mm"});
   refused(named + "sum = { theta_x = 1, z = ^1 }\n", {"makes a length, but the first term is an angle", "20 mm"});
   refused(named + "sum = { zz = ^1 }\n", {"names 'zz'", "z"});
   refused(named + "sum = { z = ^true }\n", {"response[0].sum.z", "number"});
