@@ -213,7 +213,7 @@ class Builder {
 
   /// The first axis of a joint S. It points along the line from the last preceding point that differs from the joint's
   /// own point. If all preceding points equal it, the axis points to the first following point that differs. The last
-  /// of all points is the origin of the body at the limb's end.
+  /// of all points is the origin of the body at the limb's end. If no point differs, the axis is the base's z axis.
   Vector3 first_axis_of_s(const std::vector<Element>& elements, std::size_t e, const Vector3& end) const {
     const Vector3& own = elements[e].point;
     for (std::size_t k = e; k-- > 0;) {
@@ -222,10 +222,7 @@ class Builder {
     for (std::size_t k = e + 1; k < elements.size(); ++k) {
       if (!numbers_.same(elements[k].point, own)) return (elements[k].point - own).stableNormalized();
     }
-    if (!numbers_.same(end, own)) return (end - own).stableNormalized();
-    const JointLines& joint = *elements[e].lines;
-    throw InputError(joint.place, joint.key + " '" + joint.name + "' has no other joint to point to",
-                     "its first axis is along the line to another joint; write three R instead");
+    return numbers_.same(end, own) ? Vector3::UnitZ() : (end - own).stableNormalized();
   }
 
   /// The x axis of a joint: as given, or else towards the next point, or else the first base axis that is not parallel

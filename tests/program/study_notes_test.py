@@ -33,6 +33,27 @@ factors = ["delta_1_1_x"]
 samples = 20
 """
 
+WRIST = """format = "poesy-mechanism"
+version = 1
+name = "wrist"
+title = "3-SPS-1-S"
+[platform]
+origin = [0, 0, "180 mm"]
+coordinates = ["rx", "ry", "rz"]
+rotation = "xyz"
+workspace = { rx = ["-15 deg", "15 deg"], ry = ["-15 deg", "15 deg"], rz = ["-80 deg", "80 deg"] }
+metric_points = [["90 mm", 0, "25 mm"], ["-45 mm", "78 mm", "25 mm"], ["-45 mm", "-78 mm", "25 mm"]]
+[[limb]]
+copies = { count = 3, about = "z" }
+joints = [
+  { name = "A", type = "S", at = ["150 mm", 0, 0] },
+  { name = "q", type = "P", from = "A", to = "B", actuated = true },
+  { name = "B", type = "S", at = ["90 mm * cos(50 deg)", "90 mm * sin(50 deg)", "205 mm"] } ]
+[[limb]]
+name = "post"
+joints = [ { name = "C", type = "S", at = [0, 0, "180 mm"] } ]
+"""
+
 
 class StudyNotes(ProgramTest):
     def write_rps(self, study=RPS, of_file=("", "")):
@@ -151,6 +172,16 @@ class StudyNotes(ProgramTest):
             self.assertEqual("poses 0 and 2 are on different sides of singular poses" in said, asked, said)
         self.write_tricept('["-800 mm", "-600 mm"]')
         self.assertNotIn("different sides", self.errors_of("check", "study.toml"))
+
+    def test_poses_with_a_singular_pose_between_them_in_a_wrist_of_ball_joints(self):
+        """A 3-SPS-1-S is singular where its legs meet the axis through the pivot: at 50 deg against the twist."""
+        self.write("wrist.toml", WRIST)
+        self.write("study.toml", RPS.replace("rps.toml", "wrist.toml").replace("count = 1", 'select = "file", file = "poses.csv"')
+                   .replace("delta_1_1_x", "delta_1_0_x"))
+        for last, asked in ((40, False), (-40, False), (-60, True)):
+            self.write("poses.csv", f"rx [deg],ry [deg],rz [deg]\n5,5,0\n5,0,{0.5 * last}\n5,5,{last}\n")
+            said = self.errors_of("check", "study.toml")
+            self.assertEqual("poses 0 and 2 are on different sides of singular poses" in said, asked, said)
 
     def write_tricept(self, z):
         self.write("tricept.toml", (GALLERY / "tricept/tricept.toml").read_text())
