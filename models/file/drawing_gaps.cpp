@@ -192,9 +192,10 @@ Matrix stated_columns(const Mechanism& mechanism, const std::vector<bool>& is_st
   return columns;
 }
 
-/// The errors that cover directions of a part (a frame of a limb), as columns like those of stated_columns(): those of
-/// the part; those of frames across joints that do not move, which belong to the same rigid part; and displacements
-/// along a slide by errors on its other side, because both sides have one length together. home: the limb at home.
+/// The errors that cover directions of a part (a frame of a limb), as columns like those of stated_columns(). They are
+/// the errors of the part; the errors of frames beyond fixed joints, which belong to the same rigid part; and, if a
+/// prismatic joint adjoins the part, those errors beyond it that displace along its axis, because the offsets along the
+/// axis on both sides of the joint add up to one length. home: the limb at home.
 Matrix covering_columns(const Mechanism& mechanism, const std::vector<bool>& is_stated, const PlacedLimb& home,
                         std::size_t limb, std::size_t frame) {
   const std::vector<Joint>& joints = mechanism.limbs[limb].joints;

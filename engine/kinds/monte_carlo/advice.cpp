@@ -19,8 +19,8 @@
 namespace poesy::monte_carlo {
 namespace {
 
-/// Advice such as "Make smaller first what makes most of the variance of gap alone: delta_1 (12 %), ...". Empty if the
-/// first-order indices of the errors are unknown or small, as they are for norms.
+/// Advice such as "Make smaller first the errors that alone have the largest shares of the variance of gap: delta_1
+/// (12 %), ...". Empty if the first-order indices of the errors are unknown, or if their sum is small, as for norms.
 std::string drivers_text(const StoredResult& result, std::size_t r) {
   constexpr std::size_t kMost = 3;
   constexpr double kLittle = 0.1;
@@ -42,8 +42,8 @@ std::string drivers_text(const StoredResult& result, std::size_t r) {
     sum += share(p);
   }
   if (!(sum >= kLittle)) return {};
-  text = fmt::format("Make smaller first what makes most of the variance of {} alone: {}.", result.responses[r].name,
-                     text);
+  text = fmt::format("Make smaller first the errors that alone have the largest shares of the variance of {}: {}.",
+                     result.responses[r].name, text);
   if (!unranked.empty()) text += fmt::format(" Not ranked, because they are correlated: {}.", some_names(unranked));
   return text;
 }
