@@ -56,7 +56,7 @@ class StudyValue {
   /// Reads a list of `size` elements. Throws InputError with this remedy if the list has another number of elements.
   std::vector<StudyValue> list(std::size_t size, std::string_view remedy) const;
 
-  /// Reads `written`, a part of this text, as quantity() reads a whole text. Refuses it with its own words.
+  /// Reads `written`, a part of this value's text, as quantity() reads a whole text. Messages quote `written`.
   double quantity_of(const std::string& written, Dimension dimension) const;
 
   /// Throws InputError "NAME PROBLEM; REMEDY" at the value's place.

@@ -319,7 +319,8 @@ Result result_of(const SearchProblem& problem, const FoundTolerances& search, co
   found.aim = problem.options.aim;
   found.calibrated = study.mechanism.calibrated;
   found.total_cost = candidate.point.cost;
-  // The bound is NaN if the aim is not least_cost, or if no optimisation chose the tolerances (the lowest ones).
+  // The bound is NaN if the aim is not least_cost, or if the search ended with the lowest tolerances, which solve no
+  // optimisation problem.
   found.lower_bound = candidate.chosen.lower_bound;
   found.gap = candidate.chosen.cost - candidate.chosen.lower_bound;
   found.wanted_yield = problem.options.yield;

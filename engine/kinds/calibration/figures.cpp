@@ -110,7 +110,7 @@ void add_correlations(const Result& found, Page& page) {
              "two far better than each of them.");
 }
 
-/// [poses] The root mean square of a component of the remaining displacement, including its standard deviation, SI.
+/// [poses] The root mean square of a component of the remaining displacement, SI: sqrt(left_mean^2 + left_sd^2).
 std::vector<double> left_rms_at_poses(const Result& found, std::size_t component) {
   std::vector<double> list = column_at(found.left_mean, component);
   const std::vector<double> sd = column_at(found.left_sd, component);

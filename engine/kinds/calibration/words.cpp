@@ -117,8 +117,8 @@ std::string unfitted_text(const Result& found) {
          "narrow for them";
 }
 
-/// The root mean square over the poses (SI) of a component of the displacement that remains after calibration,
-/// including its standard deviation.
+/// The root mean square over the poses (SI) of a component of the displacement that remains after calibration. The mean
+/// square at a pose is left_mean^2 + left_sd^2.
 double left_rms(const Result& found, std::size_t component) {
   double sum = 0.0;
   std::size_t poses = 0;

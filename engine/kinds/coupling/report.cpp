@@ -365,7 +365,7 @@ std::vector<Merit> merits(const StoredResult& result, std::string_view name) {
   const std::size_t r = response_named(result, name);
   const NamedUnit& response = result.responses[r];
   const double largest = found.effect_max.row(r).back() / display(response).si;
-  return {{.what = fmt::format("largest effect of all sources on {}", name),
+  return {{.what = fmt::format("largest effect of all sources together on {}", name),
            .unit = unit_text(response),
            .value = largest,
            .low = largest,

@@ -182,15 +182,20 @@ using WatchSearch = std::function<bool(const PoseSearch&)>;
 /// - trajectory: the poses of sampled(), in the order of time.
 ///
 /// Throws InputError if the box gives fewer than `count` poses (with grid_counts: no pose): at the place of a joint
-/// limit if this limit is the most frequent reason of rejection, otherwise at the place of the selection. An interior
-/// search gives up after max(100 000, 100 count) candidates, or after 50 000 candidates in a row without a feasible
-/// one. For a boundary see boundary_poses(). With grid_counts, all points are examined. Without them, a grid search
-/// gives up before a grid with more than max(100 000, 100 count) points. It also gives up after 100 000 candidates in
-/// all grids if so few of them are feasible that a grid of this largest size would give less than a quarter of the
-/// poses. A search without grid_counts also gives up if 3000 or more candidates (of one grid) are examined and all are
-/// out of reach. Throws InputError at count_place if poses of the boundary coincide up to rounding. Throws InputError
-/// for the first pose of a file or a trajectory that does not exist, is out of reach or has a condition number above
-/// max_condition: at the line of the file if the poses are the points of a file, otherwise at the study's trajectory.
+/// limit if this limit is the most frequent reason of rejection, otherwise at the place of the selection. A search
+/// gives up, with N = max(100 000, 100 count):
+///
+/// - interior: after N candidates; after 50 000 candidates in a row without a feasible one; or if the first 3000
+/// candidates are all out of reach.
+/// - boundary: see boundary_poses().
+/// - grid with grid_counts: never, all points are examined.
+/// - grid without grid_counts: before a grid with more than N points; after a grid of at least 3000 points that are all
+/// out of reach; or if 100 000 points were examined in all grids together, and with their share of feasible points a
+/// grid of N points would give fewer than count / 4 poses.
+///
+/// Throws InputError at count_place if poses of the boundary coincide up to rounding. Throws InputError for the first
+/// pose of a file or a trajectory that does not exist, is out of reach or has a condition number above max_condition:
+/// at the line of the file if the poses are the points of a file, otherwise at the study's trajectory.
 SelectedPoses select_poses(const PoseSelection& selection, const Model& model);
 
 /// Selects poses like select_poses() above, and reports progress to `watch`, which may be empty. None if `watch` stops
