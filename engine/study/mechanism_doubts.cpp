@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -15,6 +14,7 @@
 #include "engine/model/sketch.h"
 #include "engine/study/calibration.h"
 #include "engine/study/outside_poses.h"
+#include "engine/study/poses/pose_sides.h"
 #include "engine/study/poses/unusual_workspace.h"
 #include "engine/study/study_kind.h"
 
@@ -189,62 +189,13 @@ std::vector<std::string> size_doubts(const Study& study, const Model& model) {
   return list;
 }
 
-/// The square of the distance between two poses, with each coordinate in units of its range over the poses.
-static double squared_distance(const PoseSet& poses, std::span<const double> ranges, std::size_t one,
-                               std::size_t other) {
-  double sum = 0.0;
-  for (std::size_t c = 0; c < ranges.size(); ++c) {
-    if (!(ranges[c] > 0.0)) continue;
-    const double share = (poses[PoseIndex(one)][c] - poses[PoseIndex(other)][c]) / ranges[c];
-    sum += share * share;
-  }
-  return sum;
-}
-
-/// The range of each coordinate over the poses.
-static std::vector<double> ranges_of(const PoseSet& poses) {
-  std::vector<double> ranges;
-  for (std::size_t c = 0; c < poses[PoseIndex(0)].size(); ++c) {
-    double least = std::numeric_limits<double>::infinity();
-    double most = -least;
-    for (std::size_t m = 0; m < poses.size(); ++m) {
-      least = std::min(least, poses[PoseIndex(m)][c]);
-      most = std::max(most, poses[PoseIndex(m)][c]);
-    }
-    ranges.push_back(most - least);
-  }
-  return ranges;
-}
-
 std::string sides_doubt(const Model& model, const PoseSet& poses) {
-  constexpr std::size_t kMost = 40;  // poses that are tried, because one may take some milliseconds
-  if (poses.size() == 0) return {};
-  const std::size_t step = (poses.size() + kMost - 1) / kMost;
-  const std::vector<double> ranges = ranges_of(poses);
-  // Each pose is compared with a pose near it that is on the side of pose 0.
-  std::vector<std::size_t> same_side{0};
-  std::vector<std::size_t> left;
-  for (std::size_t m = step; m < poses.size(); m += step) left.push_back(m);
-  while (!left.empty()) {
-    const auto distance = [&](std::size_t m) {
-      const auto from = [&](std::size_t one) { return squared_distance(poses, ranges, one, m); };
-      const auto nearest = std::ranges::min_element(same_side, {}, from);
-      return std::pair(from(*nearest), *nearest);
-    };
-    const auto next = std::ranges::min_element(left, {}, [&](std::size_t m) { return distance(m).first; });
-    const std::size_t m = *next;
-    const std::optional<bool> separated =
-        model.are_separated(poses[PoseIndex(distance(m).second)], poses[PoseIndex(m)]);
-    if (separated.value_or(false)) {
-      return asked_back(
-          fmt::format("poses 0 and {} are on different sides of singular poses, so that a machine cannot move from one "
-                      "to the other without passing a singular pose",
-                      m));
-    }
-    if (separated) same_side.push_back(m);
-    left.erase(next);
-  }
-  return {};
+  const std::optional<std::size_t> beyond = pose_beyond_singularity(model, poses);
+  if (!beyond) return {};
+  return asked_back(fmt::format(
+      "poses 0 and {} are on different sides of singular poses, so that a machine cannot move from one to the other "
+      "without passing a singular pose",
+      *beyond));
 }
 
 std::string zones_doubt(const Study& study) {
