@@ -179,7 +179,8 @@ class OwnReader {
 
   /// Reads a weight with a unit: "20 mm", or "1 / 20 mm".
   static void read_weight(const StudyValue& value, ResponseTerm& term) {
-    const std::string text(trimmed(value.text()));
+    const std::string written = printable(value.text());
+    const std::string text(trimmed(written));
     const std::size_t slash = text.find('/');
     term.is_inverse = slash != std::string::npos;
     if (!term.is_inverse) {
@@ -187,11 +188,12 @@ class OwnReader {
       return;
     }
     const std::optional<double> above = parse_number(trimmed(std::string_view(text).substr(0, slash)));
-    if (!above) value.fail("is '" + printable(text) + "', which has no number before the '/'", "write \"1 / 20 mm\"");
+    if (!above) value.fail("is '" + text + "', which has no number before the '/'", "write \"1 / 20 mm\"");
     const double below =
         value.quantity_of(std::string(trimmed(std::string_view(text).substr(slash + 1))), Dimension::length);
     if (below == 0.0) value.fail("divides by a length of 0", "write \"1 / 20 mm\"");
     term.weight = *above / below;
+    if (!std::isfinite(term.weight)) value.fail("is not finite", "write \"1 / 20 mm\"");
   }
 
   ResponseTerm read_term(const StudyValue& weight, std::size_t response) const {

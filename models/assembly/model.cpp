@@ -152,10 +152,9 @@ double condition(const AssemblyModel& model, std::span<const double> pose) {
   return smallest > rounding * values[0] ? values[0] / smallest : std::numeric_limits<double>::infinity();
 }
 
-/// Returns true if two subspaces of the same dimension are so near that no direction of one is across the other. one,
-/// other: orthonormal bases.
+/// Returns true if two subspaces of the same dimension are almost equal. one, other: orthonormal bases.
 static bool are_near(const Matrix& one, const Matrix& other) {
-  constexpr double kLeast = 0.5;  // product of the cosines of the angles between them
+  constexpr double kLeast = 0.9;  // product of the cosines of the angles between them
   return one.cols() == other.cols() && std::abs(linalg::determinant(one.transpose() * other)) > kLeast;
 }
 

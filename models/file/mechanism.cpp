@@ -213,7 +213,8 @@ class Builder {
 
   /// The first axis of a joint S. It points along the line from the last preceding point that differs from the joint's
   /// own point. If all preceding points equal it, the axis points to the first following point that differs. The last
-  /// of all points is the origin of the body at the limb's end. If no point differs, the axis is the base's z axis.
+  /// of all points is the origin of the body at the limb's end. If no point differs, the axis is the base's z axis,
+  /// turned with a copy of the limb.
   Vector3 first_axis_of_s(const std::vector<Element>& elements, std::size_t e, const Vector3& end) const {
     const Vector3& own = elements[e].point;
     for (std::size_t k = e; k-- > 0;) {

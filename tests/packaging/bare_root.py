@@ -19,6 +19,7 @@ processes see what it mounts.
 import argparse
 import os
 import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -246,7 +247,7 @@ def clone(root, work, folder=CLONE):
 def follow(root, command, clock, folder=CLONE):
     """Runs a command in a folder of the root, shows and returns what it prints; a phase begins with each line "== ..."."""
     lines = []
-    with subprocess.Popen([*ENTER, root, "sh", "-c", f"cd /{folder} && {command}"], stdout=subprocess.PIPE,
+    with subprocess.Popen([*ENTER, root, "sh", "-c", f"cd {shlex.quote(f'/{folder}')} && {command}"], stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True, errors="replace") as process:
         try:
             for line in process.stdout:
@@ -320,8 +321,10 @@ def obey(wanted, command, suite, root, before, clock):
 def keep_build(root):
     """Moves the build folder, with the times of its files, to this repository and its owner, unless there is one."""
     mine = REPOSITORY / BUILD
-    if mine.exists():
-        print(f"\n{mine} is kept; that of the root is dropped")
+    uncommitted = subprocess.run(["git", "-c", "safe.directory=*", "-C", REPOSITORY, "status", "--porcelain"], check=True,
+                                 stdout=subprocess.PIPE).stdout
+    if mine.exists() or uncommitted:
+        print(f"\nThe build of the root is dropped: {f'{mine} exists' if mine.exists() else 'there are uncommitted changes'}")
         return
     mine.parent.mkdir(exist_ok=True)
     run(["mv", root / CLONE / BUILD, mine])
@@ -364,6 +367,8 @@ def main():
     parser.add_argument("--suite", choices=["bookworm", "trixie"])
     parser.add_argument("--keep-build", action="store_true")
     asked = parser.parse_args()
+    if REPOSITORY.parts[1] in ("dev", "proc", "sys"):  # there ENTER mounts what this machine has
+        parser.error(f"a clone at {REPOSITORY} would be hidden in the root")
     suite = asked.suite or own_suite()
     if asked.keep_build and suite != own_suite():
         parser.error(f"--keep-build: the compiler of {suite} is not that of this machine")

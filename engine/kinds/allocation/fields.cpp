@@ -84,11 +84,11 @@ const Group<Result> kAllocation{
      {"limit", &Result::limit, kResponseUnit, "Limit of the response; NaN for none"},
      {"saving", &Result::saving, kCostUnit,
       "What a limit wider by one percent at all poses would save at the same yield, to first order; NaN for a response "
-      "without a limit, and if no machine of the certificate is near the limits"},
+      "without a limit, and of several limits if no machine of the certificate is near them"},
      {"deciding_share", &Result::deciding_share, "1",
       "Share of the certificate's machines near the limits (largest ratio of a response to its limit from 0.9 to 1.1) "
       "whose largest ratio is that of this response at this pose; a limit that is judged from several poses together "
-      "counts evenly at all; NaN as for /allocation/saving",
+      "counts evenly at all; NaN for a response without a limit, and if no machine is near the limits",
       Presence::where_computed},
      {"limit_from", &Result::limit_from, kResponseUnit,
       "Lower end of the limit, minus infinity for none, NaN for a response without a limit; where a file has it, "

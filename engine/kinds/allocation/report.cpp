@@ -201,7 +201,7 @@ std::string tightest_text(const StoredResult& result) {
   const std::string where = pose ? fmt::format(", used most at {}", place_text(result, *pose)) : std::string();
   std::string others;
   for (const std::size_t r : limited_responses(found)) {
-    if (r == *most || !(found.saving(r) >= kOfNote * found.saving(*most))) continue;
+    if (r == *most || !(found.saving(r) > kOfNote * found.saving(*most))) continue;
     others += fmt::format("; that on {} {}", result.responses[r].name, number_text(found.saving(r), 3));
   }
   return fmt::format("The limit of {} on {}{}. 1 % wider it saves {} of {}{}.",

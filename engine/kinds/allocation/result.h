@@ -212,7 +212,7 @@ struct Result {
   /// 0.2.
   Array<double, axis::Response> fixed_share;
   /// Cost saved if a limit is one percent wider at all poses, to first order, so that the yield stays the same. NaN
-  /// also if no machine of the certificate is near the limits.
+  /// also if there are several limits and no machine of the certificate is near them.
   Array<double, axis::Response> saving;
   /// Share of the certificate's machines near the limits whose largest ratio of a response to its limit is that of this
   /// response at this pose. Empty in files of version 0.2.

@@ -212,6 +212,9 @@ void add_savings(std::span<const ResponseLimit> stated, const MachineLoads& fres
   const std::size_t poses = found.poses();
   const auto machines = static_cast<double>(std::accumulate(fresh.near.begin(), fresh.near.end(), std::uint64_t{0}));
   found.deciding_share = Result::AtPoses(found.limit_use.lengths(), kNaN);
+  for (const ResponseLimit& one : stated) {
+    if (stated.size() == 1 || all == 0.0) found.saving(one.response) = all;
+  }
   if (machines == 0.0) return;
   for (std::size_t k = 0; k < stated.size(); ++k) {
     const std::span near = fresh.near.row(k);

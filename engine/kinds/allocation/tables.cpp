@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "engine/base/nan.h"
 #include "engine/base/units.h"
 #include "engine/kinds/allocation/in_no_part.h"
 #include "engine/kinds/allocation/result.h"
@@ -271,8 +272,18 @@ std::string limit_note(const StoredResult& result, std::size_t r) {
   return note + "; limit: the least distance of the mechanism with perfect parts from the nearer end";
 }
 
+/// Result::deciding_share, with NaN for limits that are judged from several poses together: they decide at no pose.
+Result::AtPoses deciding_poses(const Result& found) {
+  Result::AtPoses shares = found.deciding_share;
+  for (const std::size_t r : limited_responses(found)) {
+    if (!shares.empty() && limit_on(found, r).is_over_poses()) std::ranges::fill(shares.row(r), kNaN);
+  }
+  return shares;
+}
+
 Table use_table(const StoredResult& result) {
   const Result& found = allocation_of(result);
+  const Result::AtPoses deciding = deciding_poses(found);
   std::vector<FilledColumn> columns{name_column(result.responses, "response"),
                                     {number_column("limit", "limit"),
                                      [&](std::size_t r) { return value_cell(found.limit(r), result.responses[r], 6); }},
@@ -296,14 +307,17 @@ Table use_table(const StoredResult& result) {
   }
   if (has_costs(found)) {
     columns.push_back(cost_column("saving", "1 % wider saves", found.saving));
-    table.notes.emplace_back(
-        "1 % wider saves: of the cost, at the same yield, if this limit alone is wider by 1 % at all poses, to first "
-        "order; much wider, a limit saves less for each per cent, because others then decide");
+    table.notes.push_back(fmt::format(
+        "1 % wider saves: of the cost, if this limit alone is wider by 1 % at all poses, to "
+        "first order{}",
+        found.deciding_share.empty() ? ""  // a file of version 0.2
+                                     : ", at the same yield; much wider, a limit saves less for each per cent, "
+                                       "because others then decide"));
   }
   if (!found.deciding_share.empty()) {
     columns.push_back(
         {percent_column("decides", "decides"), [&](std::size_t r) { return percent_cell(found.decides(r)); }});
-    std::ranges::move(pose_columns(result, "decides", found.deciding_share, 1), std::back_inserter(columns));
+    std::ranges::move(pose_columns(result, "decides", deciding, 1), std::back_inserter(columns));
     table.notes.emplace_back(
         "decides: share of the fresh machines near the limits, within 10 %, whose largest ratio of a response to its "
         "limit is under this limit; at pose: where most of them have it");

@@ -24,27 +24,32 @@ std::vector<double> ranges_of(const PoseSet& poses) {
   return ranges;
 }
 
-/// Compares poses by Model::are_separated(), also poses that are too far apart for it.
+/// Compares poses by Model::are_separated(), by way of the pose halfway between them. The way is needed also if both
+/// poses seem near: idle freedoms that have turned by 180 deg look as if they had not turned.
 class Sides {
  public:
   explicit Sides(const Model& model) : model_(model) {}
 
-  /// Whether the poses are separated; none if this is not known. halvings: how often the way may be halved.
+  /// Whether the poses are separated; none if this is not known. halvings: how often each half of the way may be
+  /// halved.
   std::optional<bool> are_separated(std::span<const double> one, std::span<const double> other, int halvings) {
-    if (comparisons_left_ == 0) return std::nullopt;
-    --comparisons_left_;
-    const std::optional<bool> direct = model_.are_separated(one, other);
-    if (direct || halvings == 0) return direct;
     std::vector<double> middle;
     for (std::size_t c = 0; c < one.size(); ++c) middle.push_back(0.5 * (one[c] + other[c]));
     if (model_.unreachable(middle)) return std::nullopt;
-    const std::optional<bool> first = are_separated(one, middle, halvings - 1);
-    const std::optional<bool> second = first ? are_separated(middle, other, halvings - 1) : std::nullopt;
+    const std::optional<bool> first = compare(one, middle, halvings);
+    const std::optional<bool> second = first ? compare(middle, other, halvings) : std::nullopt;
     if (!second) return std::nullopt;
     return *first != *second;
   }
 
  private:
+  std::optional<bool> compare(std::span<const double> one, std::span<const double> other, int halvings) {
+    if (comparisons_left_ == 0) return std::nullopt;
+    --comparisons_left_;
+    const std::optional<bool> direct = model_.are_separated(one, other);
+    return direct || halvings == 0 ? direct : are_separated(one, other, halvings - 1);
+  }
+
   const Model& model_;
   std::size_t comparisons_left_ = 120;  // one may take some milliseconds
 };
@@ -77,7 +82,7 @@ NearPoses nearest(const PoseSet& poses, std::span<const double> ranges, std::spa
 }  // namespace
 
 std::optional<std::size_t> pose_beyond_singularity(const Model& model, const PoseSet& poses) {
-  constexpr std::size_t kMost = 40;
+  constexpr std::size_t kMost = 30;
   constexpr int kHalvings = 2;
   if (poses.size() == 0) return std::nullopt;
   const std::size_t step = (poses.size() + kMost - 1) / kMost;

@@ -9,9 +9,8 @@
 namespace poesy {
 
 /// The index of a pose that a machine cannot reach from pose 0 without passing a singular pose
-/// (Model::are_separated()); none if no such pose is known. At most 40 poses are tried, evenly spread over the list.
-/// Each is compared with the nearest pose that is known to be on the side of pose 0. If two poses are too far apart for
-/// that, the comparison goes by way of poses between them.
+/// (Model::are_separated()); none if no such pose is known. At most 30 poses are tried, evenly spread over the list.
+/// Each is compared with the nearest pose that is known to be on the side of pose 0, by way of poses between them.
 std::optional<std::size_t> pose_beyond_singularity(const Model& model, const PoseSet& poses);
 
 }  // namespace poesy

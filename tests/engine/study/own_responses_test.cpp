@@ -362,6 +362,7 @@ TEST(OwnResponses, AreRefusedWithPlaceAndRemedy) {
   refused(named + "sum = { z = ^\"1 / L\" }\n", {"cannot be read", "mm"});
   refused(named + "sum = { z = ^\"L / 20 mm\" }\n", {"'L / 20 mm', which has no number before the '/'", "1 / 20 mm"});
   refused(named + "sum = { z = ^\"1 / 0 mm\" }\n", {"divides by a length of 0", "1 / 20 mm"});
+  refused(named + "sum = { z = ^\"1 / 1e-310 m\" }\n", {"is not finite", "1 / 20 mm"});
   refused(named + "sum = { theta_x = 1, z = ^1 }\n", {"makes a length, but the first term is an angle", "20 mm"});
   refused(named + "sum = { zz = ^1 }\n", {"names 'zz'", "z"});
   refused(named + "sum = { z = ^true }\n", {"response[0].sum.z", "number"});
