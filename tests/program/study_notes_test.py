@@ -53,6 +53,32 @@ joints = [
 name = "post"
 joints = [ { name = "C", type = "S", at = [0, 0, "180 mm"] } ]
 """
+PAN_TILT = """format = "poesy-mechanism"
+version = 1
+name = "pan-tilt"
+title = "Pan-tilt"
+[platform]
+origin = [0, 0, "200 mm"]
+coordinates = ["rz", "ry"]
+rotation = "zyx"
+workspace = { rz = ["-180 deg", "180 deg"], ry = ["-5 deg", "20 deg"] }
+metric_points = [["100 mm", 0, 0], [0, "100 mm", 0], [0, 0, "100 mm"]]
+[[body]]
+name = "table"
+at = [0, 0, 0]
+[[limb]]
+to = "table"
+joints = [ { name = "pan", type = "R", at = [0, 0, 0], axis = "z", actuated = true } ]
+[[limb]]
+from = "table"
+joints = [ { name = "hinge", type = "R", at = [0, 0, "200 mm"], axis = "y" } ]
+[[limb]]
+from = "table"
+joints = [
+  { name = "A", type = "S", at = ["-300 mm", 0, "220 mm"] },
+  { name = "q", type = "P", from = "A", to = "B", actuated = true },
+  { name = "B", type = "S", at = [0, 0, "300 mm"] } ]
+"""
 
 
 class StudyNotes(ProgramTest):
@@ -182,6 +208,14 @@ class StudyNotes(ProgramTest):
             self.write("poses.csv", f"rx [deg],ry [deg],rz [deg]\n5,5,0\n5,0,{0.5 * last}\n5,5,{last}\n")
             said = self.errors_of("check", "study.toml")
             self.assertEqual("poses 0 and 2 are on different sides of singular poses" in said, asked, said)
+
+    def test_an_idle_freedom_that_turns_with_the_machine_is_not_a_singular_pose(self):
+        """The leg of a pan-tilt spins idly; at 135 and 180 deg of pan its direction is nearly the opposite one."""
+        self.write("pan-tilt.toml", PAN_TILT)
+        self.write("study.toml", RPS.replace("rps.toml", "pan-tilt.toml").replace("count = 1", 'select = "file", file = "poses.csv"')
+                   .replace("delta_1_1_x", "delta_3_0_x"))
+        self.write("poses.csv", "rz [deg],ry [deg]\n0,5\n135,5\n180,6\n")
+        self.assertNotIn("different sides", self.errors_of("check", "study.toml"))
 
     def write_tricept(self, z):
         self.write("tricept.toml", (GALLERY / "tricept/tricept.toml").read_text())
