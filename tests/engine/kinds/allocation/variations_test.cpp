@@ -91,29 +91,69 @@ TEST(TryVariations, KeepErrorsThatAreDrawnAnewAtEachPose) {
   }
 }
 
-// Recomputes the load of each machine s in a loop over the poses, with the random numbers at the addresses (seed,
-// purpose, error, pose, sample) that theory.md defines.
+/// The responses of machine s at each pose, with the random numbers at the addresses (seed, purpose, error, pose,
+/// sample) that theory.md defines.
+std::vector<std::array<double, 2>> responses_of(const Study& study, std::size_t s) {
+  std::vector<std::array<double, 2>> list;
+  for (std::size_t m = 0; m < kPlaces.size(); ++m) {
+    std::array<double, kErrors> x{};
+    for (std::size_t p = 0; p < kErrors; ++p) {
+      const bool anew = std::ranges::find(study.errors.per_pose, FactorIndex(p)) != study.errors.per_pose.end();
+      fill_uniforms({study.seed, Purpose::error_samples, FactorIndex(p), PoseIndex(anew ? m : 0)}, SampleIndex(s),
+                    std::span(x).subspan(p, 1));
+      x[p] = Distribution::normal(0.3).quantile(x[p]);
+    }
+    function(x, kPlaces[m], list.emplace_back());
+  }
+  return list;
+}
+
+using Near = Array<std::uint64_t, axis::Limit, axis::Pose>;
+
 TEST(MachineLoads, AreThoseOfErrorsDrawnAnewAtEachPose) {
   VariedStudy study;
   study.study.errors.per_pose = {FactorIndex(0), FactorIndex(2)};
   const Plan plan = study.plan();
   const auto found = allocation::machine_loads(plan, study.model, study.study.analysis.limits, {.threads = 2});
+  Near near({2, kPlaces.size()});
   for (std::size_t s = 0; s < 450; ++s) {
     double load = 0.0;
+    std::uint64_t* deciding = nullptr;
+    const auto list = responses_of(study.study, s);
     for (std::size_t m = 0; m < kPlaces.size(); ++m) {
-      std::array<double, kErrors> x{};
-      for (std::size_t p = 0; p < kErrors; ++p) {
-        const PoseIndex pose(p == 0 || p == 2 ? m : 0);
-        fill_uniforms({study.study.seed, Purpose::error_samples, FactorIndex(p), pose}, SampleIndex(s),
-                      std::span(x).subspan(p, 1));
-        x[p] = Distribution::normal(0.3).quantile(x[p]);
+      for (std::size_t k = 0; k < 2; ++k) {
+        if (std::abs(list[m][k]) <= load) continue;
+        load = std::abs(list[m][k]);
+        deciding = &near(k, m);
       }
-      std::array<double, 2> y{};
-      function(x, kPlaces[m], y);
-      load = std::max({load, std::abs(y[0]), std::abs(y[1])});
     }
     EXPECT_NEAR(found->load[s], load, 1e-12) << s;
+    if (std::abs(load - 1.0) <= allocation::kNearLimit) ++*deciding;
   }
+  EXPECT_EQ(found->near, near);
+  EXPECT_GT(std::accumulate(near.begin(), near.end(), std::uint64_t{0}), 20U);
+}
+
+TEST(MachineLoads, OfALimitOverThePosesDecideAtPose0) {
+  VariedStudy study;
+  study.study.analysis.limits = {{0, ValueLimit::of_spread(1.5)}, {1, 1.0}};
+  Near near({2, kPlaces.size()});
+  for (std::size_t s = 0; s < 450; ++s) {
+    const auto list = responses_of(study.study, s);
+    const auto by_y = [](const auto& one, const auto& other) { return one[0] < other[0]; };
+    const auto [least, most] = std::ranges::minmax_element(list, by_y);
+    const double spread = ((*most)[0] - (*least)[0]) / 1.5;
+    const double load = std::max(spread, std::abs(list.front()[1]));  // z is the same at all poses
+    if (std::abs(load - 1.0) > allocation::kNearLimit) continue;
+    ++near(load == spread ? 0 : 1, 0);
+  }
+  for (const std::size_t threads : {1U, 3U}) {
+    const auto found =
+        allocation::machine_loads(study.plan(), study.model, study.study.analysis.limits, {.threads = threads});
+    EXPECT_EQ(found->near, near) << threads;
+  }
+  EXPECT_GT(near(0, 0), 10U);
+  EXPECT_GT(near(1, 0), 1U);
 }
 
 TEST(TryVariations, GiveTheSameOnAnyNumberOfThreads) {
