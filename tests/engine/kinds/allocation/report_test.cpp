@@ -206,8 +206,8 @@ TEST_F(AllocationReport, SaysWhatEachLimitAsksForAndWhere) {
             "largest\n"
             "in no part: share of the mean square at this pose that belongs to no part (background, errors\n"
             "without a part, noise of measurements, interactions of errors)\n"
-            "1 % wider saves: of the cost, at the same yield, if this limit alone is wider by 1 % at all poses, to\n"
-            "first order; much wider, a limit saves less for each per cent, because others then decide\n"
+            "1 % wider saves: of the cost, if this limit alone is wider by 1 % at all poses, to first order, at\n"
+            "the same yield; much wider, a limit saves less for each per cent, because others then decide\n"
             "decides: share of the fresh machines near the limits, within 10 %, whose largest ratio of a response\n"
             "to its limit is under this limit; at pose: where most of them have it\n"
             "(no room for where, in no part: a wider terminal shows more)\n");
