@@ -163,7 +163,7 @@ class Sobol(ResumptionTest):
         self.succeeds("report", "out.h5", "-o", "report.html")
         page = (self.folder / "report.html").read_text(encoding="utf-8")
         self.assertRegex(page, r"divided evenly \(Shapley\), the largest shares of the variance of linear_deformation are made "
-                               r"by others \(\d+ %\), \w+ \(\S+ %\), \w+ \(\S+ %\)\.")
+                               r"by others \(\S+ %\), \w+ \(\S+ %\), \w+ \(\S+ %\)\.")
         self.assertIn("interval of the Shapley effect of others is", page)
         self.assertIn("Make the errors of others smaller first.", page)
 
