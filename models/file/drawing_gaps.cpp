@@ -193,37 +193,26 @@ Matrix stated_columns(const Mechanism& mechanism, const std::vector<bool>& is_st
 }
 
 /// The errors that cover directions of a part (a frame of a limb), as columns like those of stated_columns(). They are
-/// the errors of the part; the errors of frames beyond fixed joints, which belong to the same rigid part; and, if a
-/// prismatic joint adjoins the part, those errors beyond it that displace along its axis, because the offsets along the
-/// axis on both sides of the joint add up to one length. home: the limb at home.
+/// the errors of the part and, if a prismatic joint adjoins the part, those errors beyond it that displace along its
+/// axis, because the offsets along the axis on both sides of the joint add up to one length. home: the limb at home.
 Matrix covering_columns(const Mechanism& mechanism, const std::vector<bool>& is_stated, const PlacedLimb& home,
                         std::size_t limb, std::size_t frame) {
   const std::vector<Joint>& joints = mechanism.limbs[limb].joints;
   Matrix all = stated_columns(mechanism, is_stated, limb, frame);
-  /// Adds errors of another frame: all of them, or those that displace along `slide` (in the base's axes).
-  const auto add = [&](std::size_t other, const std::optional<Vector3>& slide) {
+  const auto add_across = [&](std::size_t joint, std::size_t other) {
+    if (joint >= joints.size() || joints[joint].motion != Motion::prismatic) return;
+    const Vector3 slide = home.parts[frame].R.transpose() * joints[joint].at_home.R.col(2);
+    const lie::Matrix3<double> to_frame = home.parts[frame].R.transpose() * home.parts[other].R;
     const Matrix columns = stated_columns(mechanism, is_stated, limb, other);
-    const lie::Matrix6<double> to_frame = lie::adjoint(home.parts[frame].inverse() * home.parts[other]);
     for (Index c = 0; c < columns.cols(); ++c) {
-      const lie::Screw<double> column = columns.col(c);
-      const Vector3 displacement = home.parts[other].R * column.tail<3>();
-      if (slide && (column.head<3>().norm() > 0.0 || slide->cross(displacement).norm() > kDependent)) continue;
+      const Vector3 displacement = to_frame * columns.col(c).tail<3>();
+      if (columns.col(c).head<3>().norm() > 0.0 || slide.cross(displacement).norm() > kDependent) continue;
       all.conservativeResize(Eigen::NoChange, all.cols() + 1);
-      all.rightCols<1>() = (to_frame * column).normalized();
+      all.rightCols<1>() << Vector3::Zero(), displacement;
     }
   };
-  /// Adds errors across this joint and the following ones, while they do not move, and across one slide.
-  const auto cross = [&](std::size_t joint, int step) {
-    std::optional<Vector3> slide;
-    for (; joint < joints.size(); joint += static_cast<std::size_t>(step)) {  // wraps round below 0
-      const bool slides = joints[joint].motion == Motion::prismatic;
-      if (slide ? joints[joint].motion != Motion::fixed : !slides && joints[joint].motion != Motion::fixed) return;
-      if (slides) slide = joints[joint].at_home.R.col(2);
-      add(step > 0 ? joint + 1 : joint, slide);
-    }
-  };
-  cross(frame, 1);
-  if (frame > 0) cross(frame - 1, -1);
+  add_across(frame, frame + 1);
+  if (frame > 0) add_across(frame - 1, frame - 1);
   return all;
 }
 
@@ -291,15 +280,13 @@ std::string body_words(const Mechanism& mechanism, std::size_t body) {
 }
 
 /// The name of the part to which a frame's errors belong; empty between the axes of a spherical or cylindrical joint,
-/// where there is no part. A part goes on across joints that do not move.
+/// where there is no part.
 std::string part_words(const Mechanism& mechanism, const Limb& limb, std::size_t frame) {
   const std::size_t joints = limb.joints.size();
-  std::size_t first = frame;
-  while (first > 0 && limb.joints[first - 1].motion == Motion::fixed) --first;
   if (frame > 0 && frame < joints && limb.joints[frame - 1].name == limb.joints[frame].name) {
     return limb.joints[frame].kind == JointKind::universal ? "the cross of " + limb.joints[frame].name : "";
   }
-  return fmt::format("between {} and {}", first == 0 ? body_words(mechanism, limb.from) : limb.joints[first - 1].name,
+  return fmt::format("between {} and {}", frame == 0 ? body_words(mechanism, limb.from) : limb.joints[frame - 1].name,
                      frame == joints ? body_words(mechanism, limb.to) : limb.joints[frame].name);
 }
 
@@ -347,9 +334,7 @@ std::vector<std::string> uncovered_directions(const Mechanism& mechanism) {
   const std::vector<PlacedLimb> home = placed(unit, std::vector<double>(unit.moving(), 0.0));
   std::vector<Said<std::size_t>> said;
   for (std::size_t i = 0; i < effects.size(); ++i) {
-    const std::vector<Joint>& joints = mechanism.limbs[i].joints;
     for (std::size_t k = 0; k < effects[i].size(); ++k) {
-      if (k < joints.size() && joints[k].motion == Motion::fixed) continue;  // the part goes on behind this joint
       const std::string part = part_words(mechanism, mechanism.limbs[i], k);
       if (part.empty()) continue;
       const Matrix without_effect = null_space(effects[i][k], nothing);

@@ -12,10 +12,9 @@ namespace poesy::file {
 /// Finds, for each part, directions of its error twist that matter but that no error of the part covers. A direction
 /// matters if it moves a body or presses limbs against each other, to first order at home or at one of 20 poses of the
 /// workspace. Errors of a feature cover directions if a zone limits them; errors with names of their own ([[error]])
-/// cover directions as well. Frames on both sides of a joint that does not move are one part, and so are both sides of
-/// a slide for displacements along it. Between the axes of a spherical or cylindrical joint there is no part. A result
-/// is a clause such as "limbs 1 to 3, between q and B (frame 2): displacement along y has no tolerance", in the axes of
-/// the part's frame. Empty without features.
+/// cover directions as well. Both sides of a slide are one part for displacements along it. Between the axes of a
+/// spherical or cylindrical joint there is no part. Each result is a clause such as "limbs 1 to 3, between q and B
+/// (frame 2): displacement along y has no tolerance", in the axes of the part's frame. Empty without features.
 std::vector<std::string> uncovered_directions(const Mechanism& mechanism);
 
 /// A clause about the errors with names of their own ([[error]]) that are the only error of their parts and have no

@@ -31,7 +31,10 @@ std::string without(const std::string& feature) {
 
 const Clauses& uncovered() {
   static const Clauses list{
-      "limbs 1 to 3, between the base and q (frame 1): turn about z has no tolerance",
+      "limbs 1 to 3, between the base and O (frame 0): displacement along x, y and z and turn about z have no "
+      "tolerance",
+      // The zero of the drive, on the other side of the slide, is a tolerance along z.
+      "limbs 1 to 3, between O and q (frame 1): turn about z has no tolerance",
       "limbs 1 to 3, between q and B (frame 2): displacement along y has no tolerance",
       "limbs 1 to 3, the cross of C (frame 5): displacement along y has no tolerance",
       "limb 1, between C and the platform (frame 6): displacement along y has no tolerance",
@@ -46,11 +49,11 @@ TEST(DrawingGaps, AreTheDirectionsThatNoFeatureOfThePartCovers) {
 
 TEST(DrawingGaps, GrowByWhatAFeatureSaid) {
   Clauses more = uncovered();
-  more.insert(more.begin() + 2, "limbs 1 to 3, between B and C (frame 4): displacement along x has no tolerance");
+  more.insert(more.begin() + 3, "limbs 1 to 3, between B and C (frame 4): displacement along x has no tolerance");
   EXPECT_EQ(uncovered_directions(read(without("rod"))), more);
   EXPECT_EQ(uncovered_directions(read(without("zero"))), uncovered());  // the hinge's position covers it too
   more = uncovered();
-  more[1] =
+  more[2] =
       "limbs 1 to 3, between q and B (frame 2): displacement along x and y and turn about x and z have no tolerance";
   EXPECT_EQ(uncovered_directions(read(without("hinge_b"))), more);
 }
@@ -157,7 +160,7 @@ TEST(DrawingGaps, AreWithoutZonesAndStatedErrors) {
   EXPECT_EQ(uncovered_directions(read(text)), uncovered_directions(read(without("rod"))));
   const std::string stated = "\n[[error]]\nlimb = \"each\"\nname = \"width\"\nframe = 2\ncomponent = \"delta_y\"\n";
   Clauses fewer = uncovered();
-  fewer.erase(fewer.begin() + 1);
+  fewer.erase(fewer.begin() + 2);
   EXPECT_EQ(uncovered_directions(read(text_of(kName) + stated)), fewer);
 }
 
