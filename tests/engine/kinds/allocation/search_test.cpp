@@ -246,7 +246,7 @@ TEST(ToleranceSearch, KnowsThatALimitWithRoomDependsOnAPart) {
 // y = x0 + x1 and z = 0.97 (x0 - x1) have the same limit 1. Both parts cost the same, so x0 and x1 are equally large,
 // and y and z independent, with the standard deviations s and 0.97 s. The density at u of machines whose load is |y| is
 // proportional to exp(-u^2 / 2 s^2) / s, times the probability of |z| < u, and that of |z| in the same way.
-TEST(ToleranceSearch, DividesTheSavingByTheMachinesThatEachLimitDecides) {
+TEST(ToleranceSearch, DividesTheSavingByDecidingMachines) {
   constexpr double kSecond = 0.97;
   constexpr std::size_t kMachines = 100'000;
   const auto sum_and_difference = [](std::span<const double> x, double, std::span<double> y) {
