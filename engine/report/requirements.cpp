@@ -4,9 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
+#include "engine/base/nan.h"
 #include "engine/report/display.h"
 #include "engine/report/drawn_errors.h"
 #include "engine/study/study.h"
@@ -90,7 +92,24 @@ std::string other_text(const OtherRequirement& other, char letter) {
   return fmt::format("{}: {} in A, {} in {}", other.name, text(other.in_a), text(other.in_b), letter);
 }
 
+std::string left_out_text(double share) { return std::isnan(share) ? "a part" : percent_text(share); }
+
 }  // namespace
+
+double left_out_share(const StoredResult& result) {
+  if (readable_setting(result.study_text, "poses", "select") == "boundary") {
+    return some_out_of_reach(result.rejected) ? kNaN : 0.0;
+  }
+  if (result.candidates == 0) return 0.0;
+  std::size_t count = 0;
+  for (const RejectedPoses& one : result.rejected) count += one.count;
+  return static_cast<double>(count) / static_cast<double>(result.candidates);
+}
+
+bool leave_out_otherwise(double a, double b) {
+  constexpr double kAlike = 0.05;
+  return !(std::abs(a - b) <= kAlike);
+}
 
 std::string required_value(const std::string& setting, const std::string& value) {
   return setting == "poses.trajectory" ? without_points(value) : value;
@@ -125,6 +144,11 @@ std::vector<OtherRequirement> other_requirements(const StoredResult& a, const St
   }
   const bool explained = std::ranges::find(others, kPoses, &OtherRequirement::topic) != others.end();
   if (poses == PosesFrom::table && !same_poses && !explained) others.push_back({kPoses, "--poses", "", ""});
+  const double left_out_a = left_out_share(a);
+  const double left_out_b = left_out_share(b);
+  if (!same_poses && !explained && leave_out_otherwise(left_out_a, left_out_b)) {
+    others.push_back({kPoses, "left out of the workspace", left_out_text(left_out_a), left_out_text(left_out_b)});
+  }
   if (judges_machines(merit)) add_draws_of_errors(a, b, others);
   return others;
 }

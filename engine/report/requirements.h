@@ -28,6 +28,15 @@ enum class PosesFrom { study, table };
 std::vector<OtherRequirement> other_requirements(const StoredResult& a, const StoredResult& b, std::string_view merit,
                                                  PosesFrom poses = PosesFrom::study);
 
+/// The share of the poses of the workspace that a study leaves out, because the mechanism does not reach them, a joint
+/// limit excludes them or they are near singular; 0 if none is known. NaN if the study's poses are those of a boundary
+/// and the mechanism does not reach all of the workspace: how much of it is missing is then not known.
+double left_out_share(const StoredResult& result);
+
+/// Returns true if two studies with different poses leave out so different shares of the workspace (left_out_share())
+/// that figures of merit cannot be compared: the mechanism that reaches less is judged at fewer of the difficult poses.
+bool leave_out_otherwise(double a, double b);
+
 /// The topics of these requirements, each once: "limits and poses".
 std::string topics_text(const std::vector<OtherRequirement>& others);
 

@@ -24,6 +24,13 @@ const Group<Result> kSweep{
      {"unit", &Result::unit, "1", "Units of these numbers"},
      {"content_sha256", &Result::content_sha256, "1", "content_sha256 of the result of the design's own run"},
      {"verdict", &Result::verdict, "1", "Whether the limits are kept: kept, not kept, undecided, or none"},
+     {"left_out", &Result::left_out, "1",
+      "Share of the poses of the workspace that the design leaves out, because they are not feasible; NaN for an "
+      "unknown "
+      "part of a boundary",
+      Presence::where_computed},
+     {"has_first_poses", &Result::has_first_poses, "1", "1: the design has the poses of the first one",
+      Presence::where_computed},
      {"quantity_unit", &Result::quantity_unit, "1", "Units of the figures of merit"},
      {"most_is_best", &Result::most_is_best, "1", "1: a larger value is better"},
      {"is_paired", &Result::is_paired, "1", "1: intervals of changes are of the same machines in both designs"},
@@ -90,6 +97,7 @@ void append_tables(CsvTables& tables, const StoredResult& result) {
     add(" from best high", found.from_best_high);
   }
   append_solve_columns(table, found.solves);
+  if (!found.left_out.empty()) table.columns.push_back({"left_out", [&](std::size_t d) { return found.left_out(d); }});
   table.last = {"verdict", [&](std::size_t d) { return found.verdict(d); }};
   table.rest = {{"content_sha256", [&](std::size_t d) { return found.content_sha256(d); }}};
   tables.push_back(std::move(table));

@@ -60,6 +60,28 @@ std::string unit_of_change(const Result& found, std::size_t q) {
   return unit == "%" ? " percentage points" : unit.empty() ? "" : " " + unit;
 }
 
+/// The topic of designs that leave out different shares of the workspace.
+constexpr std::string_view kOtherPoses = "poses";
+
+/// Whether designs d and e are judged at different poses because they leave out different shares of the workspace.
+bool leave_out_otherwise(const Result& found, std::size_t d, std::size_t e) {
+  if (found.left_out.empty() || (found.has_first_poses(d) != 0 && found.has_first_poses(e) != 0)) return false;
+  return poesy::leave_out_otherwise(found.left_out(d), found.left_out(e));
+}
+
+/// Whether some design leaves out poses of the workspace.
+bool some_left_out(const Result& found) {
+  return std::ranges::any_of(found.left_out, [](double share) { return !(share <= 0.0); });
+}
+
+/// Whether some design leaves out another share of the workspace than the first one.
+bool some_leave_out_otherwise(const Result& found) {
+  for (std::size_t d = 1; d < found.designs(); ++d) {
+    if (leave_out_otherwise(found, d, 0)) return true;
+  }
+  return false;
+}
+
 /// The requirement, such as "limits", in which designs d and e differ and on which figure of merit q depends. Empty if
 /// there is none; the two designs can then be compared by q.
 std::string_view required_otherwise(const Result& found, std::size_t q, std::size_t d, std::size_t e) {
@@ -69,7 +91,7 @@ std::string_view required_otherwise(const Result& found, std::size_t q, std::siz
     const auto required = [&](std::size_t design) { return required_value(key, found.value(design, k)); };
     if (!topic.empty() && required(d) != required(e)) return topic;
   }
-  return {};
+  return leave_out_otherwise(found, d, e) ? kOtherPoses : std::string_view();
 }
 
 /// The requirement, such as "limits", in which some design differs from the first one and on which figure of merit q
@@ -156,6 +178,7 @@ std::string no_best_text(const Result& found, std::size_t q, std::string_view to
   for (std::size_t k = 0; k < found.keys.size(); ++k) {
     if (required_by(found.keys[k], found.quantities[q]) == topic) keys.push_back(short_key(found, k));
   }
+  if (keys.empty()) keys.emplace_back("they leave out different shares of the workspace");
   return fmt::format(
       "No design is called best, because the {} differ ({}): the {} is {}, the first design, and {}, the "
       "last.",
@@ -268,7 +291,19 @@ Table quantity_table(const Result& found, std::size_t q) {
     columns.push_back({text_column("verdict", "against the first"),
                        [&, q](std::size_t d) { return text_cell(verdict_on_first(found, q, d)); }});
   }
-  if (!topic.empty()) {
+  if (some_left_out(found)) {
+    columns.push_back(
+        {percent_column("left_out", "left out"), [&](std::size_t d) { return percent_cell(found.left_out(d)); }});
+    table.notes.emplace_back(
+        "left out: share of the workspace's poses that the design does not reach, or that joint limits exclude; - for "
+        "an "
+        "unknown part of a boundary");
+  }
+  if (some_leave_out_otherwise(found)) {
+    table.notes.emplace_back(
+        "other poses: designs that leave out different shares of the workspace are judged at different poses, so no "
+        "design is called better; take a workspace that all reach");
+  } else if (!topic.empty()) {
     table.notes.push_back(fmt::format(
         "other {0}: a {1} under other {0} does not say which design is better; sweep other keys with the same {0}",
         topic, found.quantities[q]));

@@ -37,6 +37,12 @@ struct Result {
   Array<std::string, axis::Design> verdict;         ///< verdict on the limits: "kept", "not kept",
                                                     ///< "undecided"; "none" without limits
   std::vector<SolveCounts> solves;                  ///< [designs] how the solves of the design ended
+  /// Share of the workspace's poses that the design leaves out (left_out_share()); and 1 if the design has the poses of
+  /// the first one, otherwise 0. Empty in files of version 0.2.
+  /// @{
+  Array<double, axis::Design> left_out;
+  Array<std::uint8_t, axis::Design> has_first_poses;
+  /// @}
 
   std::vector<std::string> quantities;  ///< names of the figures of merit, such as "yield"
   /// Unit of each figure of merit, such as "%" or "mm"; empty if it has none.

@@ -16,6 +16,7 @@
 #include "engine/kinds/result_file.h"
 #include "engine/kinds/study_run.h"
 #include "engine/report/merits.h"
+#include "engine/report/requirements.h"
 #include "engine/report/tables.h"
 #include "engine/stats/proportion.h"
 #include "engine/study/study_kind.h"
@@ -72,6 +73,8 @@ class Comparer {
     found_.solves.push_back(kind.tally(stored).total());
     found_.content_sha256(d) = stored.content_sha256;
     found_.verdict(d) = verdict_of(stored);
+    found_.left_out(d) = left_out_share(stored);
+    found_.has_first_poses(d) = stored.poses == first_poses_ ? 1 : 0;
     merits_.push_back(merits_of(stored));
     if (d == 0) begin(stored, merits_.front(), !rejected.empty());
     if (has_machines_) {
@@ -104,6 +107,9 @@ class Comparer {
     found_.unit = decltype(found_.unit)({keys_.size()});
     found_.content_sha256 = decltype(found_.content_sha256)({count});
     found_.verdict = decltype(found_.verdict)({count});
+    found_.left_out = decltype(found_.left_out)({count});
+    found_.has_first_poses = decltype(found_.has_first_poses)({count});
+    first_poses_ = stored.poses;
     for (std::size_t d = 0; d < count; ++d) {
       for (std::size_t k = 0; k < keys_.size(); ++k) {
         const std::string& value = designs_[d].given[k].value;
@@ -222,6 +228,7 @@ class Comparer {
   std::span<const SweptDesign> designs_;
   std::string response_;
   std::vector<std::vector<Merit>> merits_;  ///< [designs] the figures of merit of each design
+  PoseSet first_poses_;                     ///< poses of the first design
   std::vector<Rejected> rejected_;  ///< [designs] which machines each design rejects; empty unless has_machines_
   bool has_machines_ = false;       ///< true if the first design has a yield of machines that were judged
   Result found_;
