@@ -163,9 +163,9 @@ class Sobol(ResumptionTest):
         self.succeeds("report", "out.h5", "-o", "report.html")
         page = (self.folder / "report.html").read_text(encoding="utf-8")
         self.assertRegex(page, r"divided evenly \(Shapley\), the largest shares of the variance of linear_deformation are made "
-                               r"by others \(\S+ %\), \w+ \(\S+ %\), \w+ \(\S+ %\)\.")
-        self.assertIn("interval of the Shapley effect of others is", page)
-        self.assertIn("Make the errors of others smaller first.", page)
+                               r"by hinge \(\S+ %\), \w+ \(\S+ %\), \w+ \(\S+ %\)\.")
+        self.assertIn("interval of the Shapley effect of hinge is", page)
+        self.assertIn("Make the errors of hinge smaller first.", page)
 
     def test_a_solve_is_replayed(self):
         self.run_study(self.small())
