@@ -229,6 +229,33 @@ class Sweep(ProgramTest):
             rows = json.loads(self.succeeds("show", "sweep.h5", "--json"))["tables"][table]["rows"]
             self.assertEqual(rows[1]["verdict"], f"other {topic}")
 
+    def test_no_best_design_that_reaches_less_of_the_workspace(self):
+        """Rods of 260 mm reach all of the workspace, of 170 mm not its corners: these designs have other poses."""
+        mechanism = (GALLERY / "delta-printer/delta-printer.toml").read_text(encoding="utf-8")
+        self.write("delta-printer.toml", mechanism)
+        study = ('format = "poesy-study"\nversion = 1\nmechanism = { file = "delta-printer.toml" }\nposes = { count = 20 }\n'
+                 'errors = { linear = { distribution = "normal", sigma = "2 um" } }\n'
+                 'analysis = { kind = "monte-carlo", draws = "per machine", samples = 300, limits = { position = "0.1 mm" } }\n')
+        self.write("study.toml", study)
+        said = self.succeeds("sweep", "study.toml", "--set", "geometry.L=260,170mm", "-o", "sweep.h5", "--quiet")
+        self.assertIn("no design is called better", " ".join(said.split()))
+        (row,) = json.loads(self.succeeds("show", "sweep.h5", "--json"))["tables"][0]["rows"][1:]
+        self.assertEqual(row["verdict"], "other poses")
+        with h5py.File(self.folder / "sweep.h5") as file:
+            left_out = list(file["sweep/left_out"])
+            self.assertEqual(list(file["sweep/has_first_poses"]), [1, 0])
+        results = []
+        for length in (260, 170):
+            name = f"{length}.toml"
+            self.write(name, study.replace('"delta-printer.toml"', f'"delta-printer.toml", geometry = {{ L = "{length} mm" }}'))
+            self.succeeds("run", name, "-o", f"{length}.h5", "--quiet")
+            with h5py.File(self.folder / f"{length}.h5") as file:
+                results.append(sum(file["poses/rejected/count"][()]) if "poses/rejected/count" in file else 0)
+        self.assertEqual(left_out[0], 0.0)
+        self.assertAlmostEqual(left_out[1], results[1] / (20 + results[1]), places=12)
+        self.assertIn("other poses", self.succeeds("show", "260.h5", "170.h5"))
+        self.assertIn("left out of the workspace: 0 % in A", " ".join(self.succeeds("show", "260.h5", "170.h5").split()))
+
     def test_show_export_and_report(self):
         self.swept()
         text = " ".join(self.succeeds("show", "sweep.h5").split())
