@@ -308,8 +308,7 @@ Table use_table(const StoredResult& result) {
   if (has_costs(found)) {
     columns.push_back(cost_column("saving", "1 % wider saves", found.saving));
     table.notes.push_back(fmt::format(
-        "1 % wider saves: of the cost, if this limit alone is wider by 1 % at all poses, to "
-        "first order{}",
+        "1 % wider saves: of the cost, if this limit alone is wider by 1 % at all poses, to first order{}",
         found.deciding_share.empty() ? ""  // a file of version 0.2
                                      : ", at the same yield; much wider, a limit saves less for each per cent, "
                                        "because others then decide"));

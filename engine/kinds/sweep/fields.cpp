@@ -26,8 +26,7 @@ const Group<Result> kSweep{
      {"verdict", &Result::verdict, "1", "Whether the limits are kept: kept, not kept, undecided, or none"},
      {"left_out", &Result::left_out, "1",
       "Share of the poses of the workspace that the design leaves out, because they are not feasible; NaN for an "
-      "unknown "
-      "part of a boundary",
+      "unknown part of a boundary",
       Presence::where_computed},
      {"has_first_poses", &Result::has_first_poses, "1", "1: the design has the poses of the first one",
       Presence::where_computed},

@@ -296,8 +296,7 @@ Table quantity_table(const Result& found, std::size_t q) {
         {percent_column("left_out", "left out"), [&](std::size_t d) { return percent_cell(found.left_out(d)); }});
     table.notes.emplace_back(
         "left out: share of the workspace's poses that the design does not reach, or that joint limits exclude; - for "
-        "an "
-        "unknown part of a boundary");
+        "an unknown part of a boundary");
   }
   if (some_leave_out_otherwise(found)) {
     table.notes.emplace_back(
