@@ -25,15 +25,17 @@ DONE = slurm.Ended("COMPLETED", 0)
 BOTH_KINDS = {"sensitivity": SENSITIVITY, "monte-carlo": MONTE_CARLO}
 # A study that takes seconds on one processor.
 LONG = SENSITIVITY.replace("12300", "700300")
-# A script that runs poesy but stops it for some seconds in the first run of its job, so the run takes long on any
-# processor. Signals wait until poesy continues.
+# A script that runs poesy but stops it in the first run of its job until a command has ended, so the run takes long on
+# any processor. Signals wait until poesy continues.
 STANDING = """\
 #!/bin/bash
 if ((${{SLURM_RESTART_COUNT:-0}} == 0)); then
-  (sleep 1; kill -STOP $$; sleep {seconds}; kill -CONT $$) &
+  (sleep 1; kill -STOP $$; {until}; kill -CONT $$) &
 fi
 exec {program} "$@"
 """
+# Ends when SIGTERM, whose bit is 0x4000, waits for the process $$; see proc_pid_status(5).
+TERM_WAITS = "until ((0x$(awk '/^ShdPnd/ { print $2 }' /proc/$$/status) & 0x4000)); do sleep 0.2; done"
 
 
 def output_of(*command):
@@ -60,10 +62,10 @@ class SlurmTest(ResumptionTest):
         ended = self.slurm.wait(job)
         self.assertEqual(list(ended.values()), [DONE] * count, f"{ended}\n{self.logs()}")
 
-    def standing(self, seconds):
-        """sbatch's option for a job whose program stands still for so long."""
+    def standing(self, until):
+        """sbatch's option for a job whose program stands still until the command `until` has ended."""
         program = self.folder / "standing"
-        program.write_text(STANDING.format(program=PROGRAM, seconds=seconds), encoding="utf-8")
+        program.write_text(STANDING.format(program=PROGRAM, until=until), encoding="utf-8")
         program.chmod(0o755)
         return f"--export=ALL,POESY={program}"
 
@@ -99,9 +101,9 @@ class SlurmTest(ResumptionTest):
     def test_time_limit(self):
         """A shard that takes longer than its job may goes back into the queue, until it is done; the merge waits."""
         expected = self.undisturbed(LONG)
-        # Slurm signals jobs only every half minute, or later on a busy machine, and the job's minute must not end
-        # before.
-        shards = self.submit_shards(1, "--time=1", "--signal=B:TERM@55", self.standing(50))
+        # Slurm looks every half minute, or later on a busy machine, which jobs to signal: that must not be after the
+        # job's time.
+        shards = self.submit_shards(1, "--time=2", "--signal=B:TERM@115", self.standing(TERM_WAITS))
         merge = self.submit_merge(shards, 1)
         self.completes(shards)
         self.completes(merge)
@@ -150,7 +152,7 @@ class SlurmTest(ResumptionTest):
     def test_mpi_time_limit(self):
         """With a minute's limit a run stops itself after ten seconds and goes back into the queue until it is done."""
         expected = self.undisturbed(LONG)
-        job = self.submit(f"--ntasks={RANKS}", "--time=1", self.standing(12), MPI, "study.toml", "out.h5")
+        job = self.submit(f"--ntasks={RANKS}", "--time=1", self.standing("sleep 12"), MPI, "study.toml", "out.h5")
         self.completes(job)
         self.assertEqual(self.content_hash(), expected)
         self.assertGreaterEqual(self.slurm.restarts(job), 1)
