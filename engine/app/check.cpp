@@ -1,16 +1,22 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "engine/app/command_line.h"
 #include "engine/app/expected_time.h"
 #include "engine/app/progress.h"
 #include "engine/app/results.h"
 #include "engine/app/terminal.h"
+#include "engine/kinds/corner_machines.h"
 #include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
 #include "engine/run/run_options.h"
@@ -18,6 +24,7 @@
 #include "engine/storage/h5.h"
 #include "engine/study/bare_numbers.h"
 #include "engine/study/mechanism_doubts.h"
+#include "engine/study/poses/corners.h"
 #include "engine/study/study.h"
 #include "engine/study/study_file.h"
 #include "models/registry.h"
@@ -37,6 +44,52 @@ std::string trajectory_line(const SelectedPoses& poses, const ModelDescription& 
     const auto [least, most] = std::minmax_element(values.begin(), values.end());
     text += fmt::format(", {} {} to {}", coordinate.name, readable_text({*least, coordinate.dimension}, 6),
                         readable_text({*most, coordinate.dimension}, 6));
+  }
+  return text + "\n";
+}
+
+/// A line on the range of each drive's displacement at the poses of the study and at the corners of its workspace;
+/// empty if the mechanism has no drives.
+std::string travel_line(const Model& model, const PoseSet& poses, const PoseSet& corners) {
+  const std::vector<JointDisplacement>& joints = model.description().joints;
+  std::vector<Range> ranges(joints.size(),
+                            {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()});
+  const auto extend = [&](const PoseSet& set) {
+    for (std::size_t m = 0; m < set.size(); ++m) {
+      const std::vector<double> displacements = model.joint_displacements(set[PoseIndex(m)]);
+      for (std::size_t j = 0; j < ranges.size(); ++j) {
+        ranges[j].lower = std::min(ranges[j].lower, displacements[j]);
+        ranges[j].upper = std::max(ranges[j].upper, displacements[j]);
+      }
+    }
+  };
+  extend(poses);
+  extend(corners);
+  std::vector<std::string> drives;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (!joints[j].has_drive) continue;
+    drives.push_back(fmt::format("{} from {} to {}", joints[j].name,
+                                 readable_text({ranges[j].lower, joints[j].dimension}, 4),
+                                 readable_text({ranges[j].upper, joints[j].dimension}, 4)));
+  }
+  if (drives.empty()) return {};
+  return fmt::format("# travel of the drives from home, at these poses{}: {}\n",
+                     corners.size() > 0 ? " and at the corners of the workspace" : "", fmt::join(drives, ", "));
+}
+
+/// A line that says how many machines keep the limits at the poses of the study, but not at the corners of its
+/// workspace; empty if that is not known.
+std::string corners_line(const Study& study, const Model& model, const PoseSet& poses) {
+  const std::optional<CornerMachines> found = corner_machines(study, model, poses);
+  if (!found) return {};
+  const std::size_t more = found->with_corners - found->at_poses;
+  std::string text = fmt::format(
+      "# corners: of the first {} machines, {} miss a limit at these poses, and {} at a corner of the workspace",
+      found->machines, found->at_poses, more == 0 ? "no further one" : fmt::format("{} more", more));
+  if (more > 0) {
+    std::vector<std::string> counts;
+    for (const PoseCoordinate& coordinate : study.model().pose_coordinates) counts.push_back(coordinate.name + " = 2");
+    text += fmt::format("; to study the corners, write select = \"grid\", count = {{ {} }}", fmt::join(counts, ", "));
   }
   return text + "\n";
 }
@@ -127,6 +180,8 @@ int check(const std::string& path) {
   for (const std::string& remark : model->remarks()) print("# " + remark + "\n");
   for (const std::string& unusual : model->unusual_errors()) print("# hint: " + asked_back(unusual) + "\n");
   print(trajectory_line(poses, study.model()));
+  print(travel_line(*model, poses.poses, feasible_corners(study.poses, *model)));
+  print(corners_line(study, *model, poses.poses));
   print(rejected_lines(poses.rejected));
   return kDone;
 }

@@ -100,8 +100,9 @@ struct NamedCurve {
 
 /// The name and dimension of a joint's displacement from the home configuration, for results and for limits of studies.
 struct JointDisplacement {
-  std::string name;     ///< name in study and result files, such as "q_1_1"
-  Dimension dimension;  ///< length (m) or angle (rad)
+  std::string name;        ///< name in study and result files, such as "q_1_1"
+  Dimension dimension;     ///< length (m) or angle (rad)
+  bool has_drive = false;  ///< true if a drive moves the joint
 };
 
 /// A parameter of the mechanism's geometry, which a study may change.

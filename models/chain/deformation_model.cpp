@@ -295,7 +295,8 @@ std::vector<JointDisplacement> joint_displacement_names(const ParallelChain& cha
     const std::vector<Joint>& joints = chain.limbs[i].joints;
     for (std::size_t j = 0; j < joints.size(); ++j) {
       list.push_back({"q_" + std::to_string(i + 1) + "_" + std::to_string(j + 1),
-                      joints[j].type == JointType::revolute ? Dimension::angle : Dimension::length});
+                      joints[j].type == JointType::revolute ? Dimension::angle : Dimension::length,
+                      joints[j].actuated && !joints[j].fixed});
     }
   }
   return list;

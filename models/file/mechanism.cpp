@@ -457,7 +457,8 @@ std::vector<JointDisplacement> displacement_names(const Mechanism& mechanism) {
     for (std::size_t j = 0; j < joints.size(); ++j) {
       if (!joints[j].moves()) continue;
       list.push_back({"q_" + std::to_string(i + 1) + "_" + std::to_string(j + 1),
-                      joints[j].motion == Motion::prismatic ? Dimension::length : Dimension::angle});
+                      joints[j].motion == Motion::prismatic ? Dimension::length : Dimension::angle,
+                      joints[j].actuated});
     }
   }
   return list;

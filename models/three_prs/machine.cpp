@@ -55,7 +55,7 @@ void add_slide(ModelDescription& description, const std::string& letter, double 
                                       ", half of it to either side; the paper prints none, this value is chosen"});
   description.pose_coordinates.push_back(
       {name, Dimension::length, "position of the slide that moves along " + letter + " of the base frame, the rack's"});
-  description.joints.push_back({name, Dimension::length});
+  description.joints.push_back({name, Dimension::length, true});
   description.pose_lower.push_back(-0.5 * travel);
   description.pose_upper.push_back(0.5 * travel);
 }

@@ -71,7 +71,7 @@ ModelDescription describe() {
   description.responses = responses();
   description.details = details();
   for (std::size_t i = 1; i <= kLimbs; ++i) {
-    description.joints.push_back({"q_" + std::to_string(i), Dimension::length});
+    description.joints.push_back({"q_" + std::to_string(i), Dimension::length, true});
     description.joints.push_back({"th_" + std::to_string(i), Dimension::angle});
   }
   description.pose_lower = {-kTilt, -kTilt, 0.62};

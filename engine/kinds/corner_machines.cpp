@@ -1,0 +1,72 @@
+#include "engine/kinds/corner_machines.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "engine/base/index.h"
+#include "engine/kinds/calibrated_model.h"
+#include "engine/run/evaluate_unit.h"
+#include "engine/run/result.h"
+#include "engine/study/plan.h"
+#include "engine/study/poses/corners.h"
+#include "engine/study/study_kind.h"
+
+namespace poesy {
+namespace {
+
+constexpr std::size_t kMostMachines = 100;
+constexpr std::size_t kLeastMachines = 20;
+constexpr std::size_t kMostSolves = 20'000;
+
+/// Returns true if one pose of a machine shows whether the machine misses a limit there.
+bool has_limits_at_each_pose(const Study& study) {
+  const Analysis& analysis = study.analysis;
+  const auto is_relative_to_previous = [](const OwnResponse& own) {
+    return own.relative_to && own.relative_to->is_previous();
+  };
+  return analysis.kind->varies == Varies::together && !analysis.kind->finds_sizes &&
+         analysis.draws == Draws::per_machine && !analysis.limits.empty() && !any_over_poses(analysis.limits) &&
+         std::ranges::none_of(study.mechanism.responses, is_relative_to_previous);
+}
+
+/// Notes which machines miss a limit at a pose of the plan. misses: [machines] true for a machine that misses a limit.
+void add_misses(const Plan& plan, const Model& model, std::span<const ResponseLimit> limits,
+                std::vector<bool>& misses) {
+  PoseUnitEvaluator evaluator(plan, model);
+  const std::size_t count = misses.size();
+  for (std::size_t m = 0; m < plan.poses().size(); ++m) {
+    const UnitOutcomes outcomes = evaluator.solve({0, PoseIndex(m), SampleIndex(0), count});
+    for (std::size_t s = 0; s < count; ++s) {
+      const auto is_missed = [&](const ResponseLimit& limit) {
+        return !limit.allowed.holds(outcomes.responses[limit.response * count + s]);
+      };
+      if (!counts(outcomes.status[s], plan.not_converged()) || std::ranges::any_of(limits, is_missed)) misses[s] = true;
+    }
+  }
+}
+
+std::size_t number_of(const std::vector<bool>& misses) {
+  return static_cast<std::size_t>(std::ranges::count(misses, true));
+}
+
+}  // namespace
+
+std::optional<CornerMachines> corner_machines(const Study& study, const Model& model, const PoseSet& poses) {
+  if (!has_limits_at_each_pose(study)) return std::nullopt;
+  PoseSet corners = feasible_corners(study.poses, model);
+  const Plan plan(study, poses);
+  const std::size_t machines = std::min({kMostMachines, plan.samples(), kMostSolves / (poses.size() + corners.size())});
+  if (corners.size() == 0 || machines < kLeastMachines) return std::nullopt;
+  const std::shared_ptr<const Model> studied = studied_model(study, model, poses);
+  CornerMachines found{.corners = corners.size(), .machines = machines, .at_poses = 0, .with_corners = 0};
+  std::vector<bool> misses(machines, false);
+  add_misses(plan, *studied, study.analysis.limits, misses);
+  found.at_poses = number_of(misses);
+  add_misses(Plan(study, std::move(corners)), *studied, study.analysis.limits, misses);
+  found.with_corners = number_of(misses);
+  return found;
+}
+
+}  // namespace poesy
