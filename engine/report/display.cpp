@@ -105,12 +105,12 @@ std::vector<std::string> only_in(const std::vector<std::string>& these, const st
   return list;
 }
 
-std::string_view verdict_word(YieldVerdict::Decision decision) {
-  switch (decision) {
+std::string verdict_words(const YieldVerdict& yield) {
+  switch (yield.decision) {
     case YieldVerdict::Decision::not_asked:
       return "";
     case YieldVerdict::Decision::kept:
-      return "PASS";
+      return yield.parts_leave_open() ? "PASS for these measured parts" : "PASS";
     case YieldVerdict::Decision::not_kept:
       return "FAIL";
     case YieldVerdict::Decision::undecided:

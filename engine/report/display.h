@@ -50,8 +50,10 @@ std::vector<std::string> only_in(const std::vector<std::string>& these, const st
 /// The metric that weighs angles against lengths, in words: "platform, by displacement of 3 points". Empty if the
 /// result has no metric.
 std::string metric_text(const StoredResult& result);
-/// The word for a decision on the wanted yield: "PASS", "FAIL" or "UNDECIDED"; empty if the study asks for no yield.
-std::string_view verdict_word(YieldVerdict::Decision decision);
+/// The decision on the wanted yield: "PASS", "FAIL" or "UNDECIDED". "PASS for these measured parts" if the parts on
+/// which errors were measured do not show the yield (YieldVerdict::parts_leave_open()). Empty if the study asks for no
+/// yield.
+std::string verdict_words(const YieldVerdict& yield);
 
 /// A value of a response (SI) as text in the unit that results show: "0.05 mm".
 std::string response_text(const NamedUnit& response, double si);

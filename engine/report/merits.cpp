@@ -211,9 +211,9 @@ std::string compared_response(std::span<const StoredResult* const> results, cons
 
 /// The verdict on the wanted yield: "FAIL (90 % wanted)"; empty if the study asks for no yield.
 static std::string verdict_text(const YieldVerdict& yield) {
-  const std::string_view word = verdict_word(yield.decision);
-  return word.empty() || !(yield.asked > 0.0) ? std::string()
-                                              : fmt::format("{} ({} wanted)", word, percent_text(yield.asked));
+  const std::string words = verdict_words(yield);
+  return words.empty() || !(yield.asked > 0.0) ? std::string()
+                                               : fmt::format("{} ({} wanted)", words, percent_text(yield.asked));
 }
 
 Merit yield_merit(const YieldVerdict& yield) {

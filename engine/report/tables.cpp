@@ -57,13 +57,13 @@ std::string yield_caption(const YieldVerdict& yield) {
   const std::string asked = percent_text(yield.asked);
   switch (yield.decision) {
     case kept:
-      return fmt::format("PASS{}: the yield is at least {}: {}",
-                         yield.parts_leave_open() ? " for these measured parts, which do not show it of others" : "",
-                         asked, found);
+      return fmt::format("{}{}: the yield is at least {}: {}", verdict_words(yield),
+                         yield.parts_leave_open() ? ", which do not show it of others" : "", asked, found);
     case not_kept:
-      return fmt::format("FAIL: the yield is below {}: {}", asked, found);
+      return fmt::format("{}: the yield is below {}: {}", verdict_words(yield), asked, found);
     case undecided:
-      return fmt::format("UNDECIDED: so few machines do not tell whether the yield is {}: {}", asked, found);
+      return fmt::format("{}: so few machines do not tell whether the yield is {}: {}", verdict_words(yield), asked,
+                         found);
     case not_asked:
       break;
   }

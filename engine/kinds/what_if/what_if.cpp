@@ -25,6 +25,7 @@ constexpr std::size_t kMostMachines = Plan::kUnitSamples;
 constexpr std::size_t kMostNumbers = 60'000;
 constexpr std::size_t kMostPoses = 150;  // largest number of poses that are solved, so that a report takes seconds
 constexpr std::size_t kMostSliders = 10;
+constexpr double kLeastShare = 1e-6;  // smallest share of a slider's errors, as a share of the largest one
 // The largest allowed WhatIf::linear_error: the error of the linear prediction if all sizes change by 100 %, as a share
 // of a limit. If the error is larger, there is no prediction.
 constexpr double kMostLinearError = 0.5;
@@ -71,7 +72,8 @@ std::vector<double> rejects_at(const TriedMachines& tried) {
   return weights;
 }
 
-/// The groups of errors that get a slider: those with the largest shares, at most kMostSliders.
+/// The groups of errors that get a slider: those with the largest shares, at most kMostSliders. Groups with less than a
+/// millionth of the largest share get none, because their sliders would change nothing.
 std::vector<SizedErrors> leading(const JudgedMachines& judged, const TriedMachines& tried, const Plan& plan) {
   const std::vector<double> of_each = shares(tried, plan, rejects_at(tried));
   std::vector<std::pair<double, std::size_t>> order;
@@ -82,8 +84,8 @@ std::vector<SizedErrors> leading(const JudgedMachines& judged, const TriedMachin
   }
   std::ranges::stable_sort(order, std::ranges::greater(), [](const auto& one) { return one.first; });
   std::vector<SizedErrors> list;
-  for (const auto& one : std::span(order).first(std::min(kMostSliders, order.size()))) {
-    list.push_back(judged.errors[one.second]);
+  for (const auto& [share, g] : std::span(order).first(std::min(kMostSliders, order.size()))) {
+    if (share > kLeastShare * order.front().first) list.push_back(judged.errors[g]);
   }
   return list;
 }

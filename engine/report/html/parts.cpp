@@ -16,8 +16,8 @@ namespace {
 /// The decision on a yield in words, which precede a sentence: "FAIL, 95 % are asked for: ". Empty if the study asks
 /// for no yield.
 std::string decision_text(const YieldVerdict& yield) {
-  const std::string_view word = verdict_word(yield.decision);
-  return word.empty() ? "" : fmt::format("{}, {} are asked for: ", word, percent_text(yield.asked));
+  const std::string words = verdict_words(yield);
+  return words.empty() ? "" : fmt::format("{}, {} are asked for: ", words, percent_text(yield.asked));
 }
 
 }  // namespace
