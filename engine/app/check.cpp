@@ -79,8 +79,8 @@ std::string travel_line(const Model& model, const PoseSet& poses, const PoseSet&
 
 /// A line that says how many machines keep the limits at the poses of the study, but not at the corners of its
 /// workspace; empty if that is not known.
-std::string corners_line(const Study& study, const Model& model, const PoseSet& poses) {
-  const std::optional<CornerMachines> found = corner_machines(study, model, poses);
+std::string corners_line(const Study& study, const Model& model, const PoseSet& poses, const PoseSet& corners) {
+  const std::optional<CornerMachines> found = corner_machines(study, model, poses, corners);
   if (!found) return {};
   const std::size_t more = found->with_corners - found->at_poses;
   std::string text = fmt::format(
@@ -180,8 +180,9 @@ int check(const std::string& path) {
   for (const std::string& remark : model->remarks()) print("# " + remark + "\n");
   for (const std::string& unusual : model->unusual_errors()) print("# hint: " + asked_back(unusual) + "\n");
   print(trajectory_line(poses, study.model()));
-  print(travel_line(*model, poses.poses, feasible_corners(study.poses, *model)));
-  print(corners_line(study, *model, poses.poses));
+  const PoseSet corners = feasible_corners(study.poses, *model);
+  print(travel_line(*model, poses.poses, corners));
+  print(corners_line(study, *model, poses.poses, corners));
   print(rejected_lines(poses.rejected));
   return kDone;
 }

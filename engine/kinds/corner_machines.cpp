@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <memory>
-#include <utility>
+#include <span>
 #include <vector>
 
 #include "engine/base/index.h"
@@ -10,7 +10,6 @@
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
 #include "engine/study/plan.h"
-#include "engine/study/poses/corners.h"
 #include "engine/study/study_kind.h"
 
 namespace poesy {
@@ -53,18 +52,18 @@ std::size_t number_of(const std::vector<bool>& misses) {
 
 }  // namespace
 
-std::optional<CornerMachines> corner_machines(const Study& study, const Model& model, const PoseSet& poses) {
-  if (!has_limits_at_each_pose(study)) return std::nullopt;
-  PoseSet corners = feasible_corners(study.poses, model);
+std::optional<CornerMachines> corner_machines(const Study& study, const Model& model, const PoseSet& poses,
+                                              const PoseSet& corners) {
+  if (!has_limits_at_each_pose(study) || corners.size() == 0) return std::nullopt;
   const Plan plan(study, poses);
   const std::size_t machines = std::min({kMostMachines, plan.samples(), kMostSolves / (poses.size() + corners.size())});
-  if (corners.size() == 0 || machines < kLeastMachines) return std::nullopt;
+  if (machines < kLeastMachines) return std::nullopt;
   const std::shared_ptr<const Model> studied = studied_model(study, model, poses);
-  CornerMachines found{.corners = corners.size(), .machines = machines, .at_poses = 0, .with_corners = 0};
+  CornerMachines found{.machines = machines, .at_poses = 0, .with_corners = 0};
   std::vector<bool> misses(machines, false);
   add_misses(plan, *studied, study.analysis.limits, misses);
   found.at_poses = number_of(misses);
-  add_misses(Plan(study, std::move(corners)), *studied, study.analysis.limits, misses);
+  add_misses(Plan(study, corners), *studied, study.analysis.limits, misses);
   found.with_corners = number_of(misses);
   return found;
 }

@@ -55,7 +55,7 @@ program_test(load regression)
 set_property(TEST program.calibrate program.calibrate_refusals program.calibrate_report program.calibrated_study program.calibrated_allocation
              program.calibrated_sensitivity program.drawing program.compare program.flatness
              program.growing_errors program.leading_response program.allocation_over_poses program.mechanism_file
-             program.relative_responses program.shared_drive
+             program.relative_responses program.shared_drive program.workspace_corners
              program.assembly program.assembly_modes program.branched program.load
              APPEND PROPERTY ENVIRONMENT POESY_DATA=${CMAKE_CURRENT_SOURCE_DIR}/data)
 program_test(determinism determinism)
@@ -63,6 +63,7 @@ program_test(adaptive determinism)
 program_test(fidelity unit)
 program_test(interruption robustness)
 program_test(pose_search robustness)
+program_test(workspace_corners unit)
 program_test(long_run robustness)
 program_test(kill robustness)
 program_test(replay unit)
