@@ -335,7 +335,7 @@ bounds = ["0.002 mm", "0.2 mm"]
         self.assertEqual(left_out, ["rail.perpendicularity", "hinge_b.parallelism"])
         rows = self.rows("two.h5")
         self.assertEqual(list(rows[0]), "limbs feature symbol sign zone_mm shape datums length_mm cost share_of_cost "
-                                        "share_of_mean_square sigmas inside grade remark".split())
+                                        "share_of_mean_square sigmas inside grade remark angle_deg".split())
         self.assertEqual([f"{row['feature']}.{row['symbol']}" for row in rows], [z for z in zones if z not in left_out])
         for row in rows:
             exact = 1e3 * tolerance[zones[f"{row['feature']}.{row['symbol']}"]]

@@ -173,6 +173,9 @@ CsvTable drawing_csv(const Result& found) {
   add("inside", [&found, text](std::size_t n) { return text(found.zone_inside(n)); });
   add("grade", [&found, or_none](std::size_t n) { return or_none(found.chosen(n)); });
   add("remark", [&found, or_none](std::size_t n) { return or_none(remark(found, n)); });
+  add("angle_deg", [&found](std::size_t n) {
+    return found.part_unit(n) == "rad" ? drawing_number(found.tolerance(n), "rad") : std::string();
+  });
   return table;
 }
 

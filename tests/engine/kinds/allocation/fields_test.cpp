@@ -135,10 +135,14 @@ TEST_F(AllocationFile, KeepsTheZonesOfADrawing) {
   EXPECT_EQ(found.zone_is_needed, written_.zone_is_needed);
   EXPECT_EQ(csv("drawing"),
             "limbs,feature,symbol,sign,zone_mm,shape,datums,length_mm,cost,share_of_cost,share_of_mean_square,sigmas,"
-            "inside,grade,remark\n"
+            "inside,grade,remark,angle_deg\n"
             "\"1, 3\",rail,position,\u2316,0.01234,cylinder,A|B,500,2.5,0.25,0.5,3,0.9779,none,perpendicularity: not "
-            "needed\n"
-            "none,plate,tolerance,\u00b1,0.025,interval,none,,0.5,0.05,0.125,3,,IT7,given\n");
+            "needed,\n"
+            "none,plate,tolerance,\u00b1,0.025,interval,none,,0.5,0.05,0.125,3,,IT7,given,\n");
+  written_.part_unit(2) = "rad";
+  write();
+  EXPECT_NE(csv("drawing").find("none,plate,tolerance,\u00b1,,interval,none,,0.5,0.05,0.125,3,,IT7,given,0.001432\n"),
+            std::string::npos);
   EXPECT_NE(problem_with("/allocation/zone_key", "/allocation/zone_feature").find("unknown zone"), std::string::npos);
 }
 
