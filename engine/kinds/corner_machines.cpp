@@ -15,10 +15,6 @@
 namespace poesy {
 namespace {
 
-constexpr std::size_t kMostMachines = 100;
-constexpr std::size_t kLeastMachines = 20;
-constexpr std::size_t kMostSolves = 20'000;
-
 /// Returns true if one pose of a machine shows whether the machine misses a limit there.
 bool has_limits_at_each_pose(const Study& study) {
   const Analysis& analysis = study.analysis;
@@ -55,9 +51,12 @@ std::size_t number_of(const std::vector<bool>& misses) {
 std::optional<CornerMachines> corner_machines(const Study& study, const Model& model, const PoseSet& poses,
                                               const PoseSet& corners) {
   if (!has_limits_at_each_pose(study) || corners.size() == 0) return std::nullopt;
+  constexpr std::size_t kMost = 100;  // machines
+  constexpr std::size_t kLeast = 20;
+  constexpr std::size_t kSolves = 20'000;
   const Plan plan(study, poses);
-  const std::size_t machines = std::min({kMostMachines, plan.samples(), kMostSolves / (poses.size() + corners.size())});
-  if (machines < kLeastMachines) return std::nullopt;
+  const std::size_t machines = std::min({kMost, plan.samples(), kSolves / (poses.size() + corners.size())});
+  if (machines < kLeast) return std::nullopt;
   const std::shared_ptr<const Model> studied = studied_model(study, model, poses);
   CornerMachines found{.machines = machines, .at_poses = 0, .with_corners = 0};
   std::vector<bool> misses(machines, false);

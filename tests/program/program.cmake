@@ -52,6 +52,7 @@ program_test(own_responses regression)
 program_test(relative_responses statistical)
 program_test(branched statistical)
 program_test(load regression)
+program_test(workspace_corners unit)
 set_property(TEST program.calibrate program.calibrate_refusals program.calibrate_report program.calibrated_study program.calibrated_allocation
              program.calibrated_sensitivity program.drawing program.compare program.flatness
              program.growing_errors program.leading_response program.allocation_over_poses program.mechanism_file
@@ -63,7 +64,6 @@ program_test(adaptive determinism)
 program_test(fidelity unit)
 program_test(interruption robustness)
 program_test(pose_search robustness)
-program_test(workspace_corners unit)
 program_test(long_run robustness)
 program_test(kill robustness)
 program_test(replay unit)
