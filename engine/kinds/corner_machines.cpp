@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/array.h"
 #include "engine/base/index.h"
 #include "engine/kinds/calibrated_model.h"
 #include "engine/run/evaluate_unit.h"
@@ -33,9 +34,11 @@ void add_misses(const Plan& plan, const Model& model, std::span<const ResponseLi
   const std::size_t count = misses.size();
   for (std::size_t m = 0; m < plan.poses().size(); ++m) {
     const UnitOutcomes outcomes = evaluator.solve({0, PoseIndex(m), SampleIndex(0), count});
+    const ArrayView<const double, axis::Response, axis::Sample> responses(outcomes.responses,
+                                                                          {outcomes.responses.size() / count, count});
     for (std::size_t s = 0; s < count; ++s) {
       const auto is_missed = [&](const ResponseLimit& limit) {
-        return !limit.allowed.holds(outcomes.responses[limit.response * count + s]);
+        return !limit.allowed.holds(responses(limit.response, s));
       };
       if (!counts(outcomes.status[s], plan.not_converged()) || std::ranges::any_of(limits, is_missed)) misses[s] = true;
     }
