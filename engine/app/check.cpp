@@ -77,21 +77,11 @@ std::string travel_line(const Model& model, const PoseSet& poses, const PoseSet&
                      corners.size() > 0 ? " and at the corners of the workspace" : "", fmt::join(drives, ", "));
 }
 
-/// A line that says how many machines keep the limits at the poses of the study, but not at the corners of its
-/// workspace; empty if that is not known.
+/// A line on the machines that miss a limit only at a corner of the workspace (corners_text()); empty if these are not
+/// known.
 std::string corners_line(const Study& study, const Model& model, const PoseSet& poses, const PoseSet& corners) {
   const std::optional<CornerMachines> found = corner_machines(study, model, poses, corners);
-  if (!found) return {};
-  const std::size_t more = found->with_corners - found->at_poses;
-  std::string text = fmt::format(
-      "# corners: of the first {} machines, {} miss a limit at these poses, and {} at a corner of the workspace",
-      found->machines, found->at_poses, more == 0 ? "no further one" : fmt::format("{} more", more));
-  if (more > 0) {
-    std::vector<std::string> counts;
-    for (const PoseCoordinate& coordinate : study.model().pose_coordinates) counts.push_back(coordinate.name + " = 2");
-    text += fmt::format("; to study the corners, write select = \"grid\", count = {{ {} }}", fmt::join(counts, ", "));
-  }
-  return text + "\n";
+  return found ? fmt::format("# corners: {}\n", corners_text(*found, study.model())) : std::string();
 }
 
 using Clock = std::chrono::steady_clock;

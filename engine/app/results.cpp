@@ -196,13 +196,20 @@ std::string samples_text(const RunFacts& facts) {
 
 std::optional<SelectedPoses> find_poses(const Study& study, const Model& model, const SearchOptions& options) {
   ProgressLine line(options.quiet);
-  return select_poses(study.poses, model, [&](const PoseSearch& search) {
+  const auto watch = [&](const PoseSearch& search) {
     if (options.stop != nullptr && *options.stop) return false;
     if (!line.is_due(ProgressLine::Clock::now())) return true;
     const auto cut = [&](std::size_t width) { return search_line(search).substr(0, width); };
     line.write([&] { return search_line(search); }, cut);
     return true;
-  });
+  };
+  try {
+    return select_poses(study.poses, model, watch);
+  } catch (const InputError&) {
+    // a wrong size of the mechanism is a likely reason, and nothing else would be said of it
+    for (const std::string& doubt : geometry_doubts(study.mechanism)) say(Message::warning, doubt);
+    throw;
+  }
 }
 
 std::vector<std::string> inputs_of(const std::string& study_path, const Study& study) {
@@ -383,7 +390,7 @@ std::vector<std::string> all_doubts(const Study& study, const Model& model, cons
 }
 
 std::vector<std::string> study_notes(const Study& study) {
-  std::vector<std::string> notes{calibration_text(study), held_errors_text(study)};
+  std::vector<std::string> notes{calibration_text(study), held_errors_text(study), left_out_text(study)};
   if (study.analysis.kind->note != nullptr) notes.push_back(study.analysis.kind->note(study));
   std::erase(notes, "");
   return notes;

@@ -109,8 +109,8 @@ void warn_of_mechanism(const Study& study, const Model& model);
 /// points far from those for which the correction of the actuators is best (correction_doubt()).
 std::vector<std::string> all_doubts(const Study& study, const Model& model, const SelectedPoses& poses);
 
-/// Notes on the study, one line each: how its machines are calibrated, which errors are constant, and the note of the
-/// kind of study (StudyKind::note).
+/// Notes on the study, one line each: how its machines are calibrated, which errors are constant, which are left out,
+/// and the note of the kind of study (StudyKind::note).
 std::vector<std::string> study_notes(const Study& study);
 
 /// Reads a result file. Warns on stderr if the file was changed after it was written. Throws FileError.

@@ -18,6 +18,7 @@
 #include "engine/app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/kinds/corner_machines.h"
 #include "engine/kinds/registry.h"
 #include "engine/kinds/study_file.h"
 #include "engine/kinds/study_run.h"
@@ -25,6 +26,7 @@
 #include "engine/result/result_file.h"
 #include "engine/run/ranks/team.h"
 #include "engine/run/run_options.h"
+#include "engine/study/poses/corners.h"
 #include "engine/study/poses/pose_selection.h"
 #include "engine/study/study.h"
 #include "engine/study/study_file.h"
@@ -171,6 +173,12 @@ void say_rejected(const Study& study, const SelectedPoses& poses, bool quiet) {
   if (is_warning || !quiet) say(is_warning ? Message::warning : Message::note, text);
 }
 
+/// Says how many machines miss a limit only at a corner of the workspace, if there are such machines.
+void say_corners(const Study& study, const Model& model, const PoseSet& poses) {
+  const auto found = corner_machines(study, model, poses, feasible_corners(study.poses, model));
+  if (found && found->only_at_corners() > 0) say(Message::note, corners_text(*found, study.model()));
+}
+
 /// Runs the study in one process, or as rank 0 of a team. team: null for one process.
 int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   const std::atomic<bool>& stop = catch_interrupts();
@@ -201,6 +209,7 @@ int run(const RunCommandOptions& options, std::size_t threads, Team* team) {
   for (const std::string& note : study_notes(study)) {
     if (!options.quiet) say(Message::note, note);
   }
+  if (!options.quiet) say_corners(study, *model, poses->poses);
   Job job{.study = study,
           .model = *model,
           .poses = *std::move(poses),

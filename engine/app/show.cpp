@@ -70,8 +70,8 @@ void check_ranks(const ShowOptions& options, const std::string& path, const Stor
   if (options.top && std::ranges::none_of(tables, &Table::ranked)) refuse("--top", "ranks no errors");
 }
 
-/// Remarks and warnings on the mechanism and the poses and, unless a table of errors was solved, notes on calibration
-/// and constant errors. Empty if this program cannot read the result's study.
+/// Remarks and warnings on the mechanism and the poses and, unless a table of errors was solved, notes on calibration,
+/// constant errors and errors left out. Empty if this program cannot read the result's study.
 std::string study_lines(const StoredResult& result, std::size_t width) {
   const std::optional<Study> study = study_in(result, registry());
   if (!study) return {};
@@ -87,6 +87,7 @@ std::string study_lines(const StoredResult& result, std::size_t width) {
   if (!words.from_tables) {
     lines.push_back(calibration_text(*study));
     lines.push_back(held_errors_text(*study));
+    lines.push_back(left_out_text(*study));
   }
   std::string text;
   for (const std::string& line : lines) {

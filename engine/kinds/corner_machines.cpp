@@ -1,16 +1,22 @@
 #include "engine/kinds/corner_machines.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/base/array.h"
 #include "engine/base/index.h"
 #include "engine/kinds/calibrated_model.h"
+#include "engine/report/html/parts.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
 #include "engine/study/plan.h"
+#include "engine/study/poses/corners.h"
 #include "engine/study/study_kind.h"
 
 namespace poesy {
@@ -68,6 +74,29 @@ std::optional<CornerMachines> corner_machines(const Study& study, const Model& m
   add_misses(Plan(study, corners), *studied, study.analysis.limits, misses);
   found.with_corners = number_of(misses);
   return found;
+}
+
+std::string corners_text(const CornerMachines& found, const ModelDescription& model) {
+  const std::size_t more = found.only_at_corners();
+  std::string text = fmt::format(
+      "of the first {} machines, {} {} a limit at the poses of the study, and {} at a corner of the workspace",
+      found.machines, found.at_poses, found.at_poses == 1 ? "misses" : "miss",
+      more == 0 ? "no further one" : fmt::format("{} more", more));
+  if (more == 0) return text;
+  std::vector<std::string> counts;
+  for (const PoseCoordinate& coordinate : model.pose_coordinates) counts.push_back(coordinate.name + " = 2");
+  return text +
+         fmt::format("; to study the corners, write select = \"grid\", count = {{ {} }}", fmt::join(counts, ", "));
+}
+
+void add_not_covered(const Study& study, const Model& model, const PoseSet& poses, Page& page) {
+  const auto line = std::ranges::find(page.answer, kWhatToDo, &AnswerLine::first);
+  if (line == page.answer.end()) return;
+  if (std::string left_out = left_out_text(study); !left_out.empty()) {
+    line->second += " " + as_sentence(std::move(left_out));
+  }
+  const auto found = corner_machines(study, model, poses, feasible_corners(study.poses, model));
+  if (found && found->only_at_corners() > 0) line->second += " " + as_sentence(corners_text(*found, study.model()));
 }
 
 }  // namespace poesy

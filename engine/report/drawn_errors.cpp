@@ -43,13 +43,15 @@ std::vector<std::string> sizes_of_dimensions(const StoredResult& result) {
 }
 
 /// The sizes of errors for each distribution and unit: "24 normal with standard deviations of 0.002 to 0.02 mm". In a
-/// study with errors.zones the distributions are not named, because errors of features may be drawn together.
+/// study with errors.zones that are not normal the distributions are not named, because errors of features are drawn
+/// together.
 std::vector<std::string> sizes_of_distributions(const StoredResult& result) {
-  const bool in_zones = !readable_setting(result.study_text, "errors", "zones").empty();
+  const std::string zones = readable_setting(result.study_text, "errors", "zones");
+  const bool are_together = !zones.empty() && zones.find("distribution = normal") == std::string::npos;
   std::map<std::pair<std::string, std::string>, std::vector<double>> groups;
   for (std::size_t p = 0; p < result.factor_sigma.size(); ++p) {
     const Unit& unit = display(result.factors[p]);
-    const std::string distribution = in_zones ? "" : result.factor_distribution[p] + " ";
+    const std::string distribution = are_together ? "" : result.factor_distribution[p] + " ";
     groups[{std::string(unit.name), distribution}].push_back(result.factor_sigma[p] / unit.si);
   }
   std::vector<std::string> sizes;

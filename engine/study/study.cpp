@@ -195,6 +195,25 @@ std::string held_errors_text(const Study& study) {
   return fmt::format("held constant{}: {} at {}", unless, owners_text(held, study), sizes_text(held, study));
 }
 
+std::string left_out_text(const Study& study) {
+  constexpr std::size_t kMost = 8;
+  const Analysis& analysis = study.analysis;
+  if (!study.mechanism.file || analysis.limits.empty() || analysis.kind->varies != Varies::together) return {};
+  std::vector<FactorIndex> present = analysis.factors;
+  if (analysis.background) std::ranges::copy(held_errors(study), std::back_inserter(present));
+  const std::vector<Factor>& all = study.model().factors;
+  std::vector<std::string_view> names;
+  for (std::size_t f = 0; f < all.size(); ++f) {
+    if (std::ranges::find(present, FactorIndex(f)) == present.end()) names.push_back(all[f].name);
+  }
+  if (names.empty()) return {};
+  const std::size_t count = names.size();
+  names.resize(std::min(count, kMost));
+  return fmt::format("left out: {} of the {} errors of the mechanism {} zero: {}{}", count, all.size(),
+                     count == 1 ? "does not vary and is" : "do not vary and are", fmt::join(names, ", "),
+                     count == names.size() ? "" : fmt::format(" and {} more", count - names.size()));
+}
+
 std::string calibration_text(const Study& study) {
   if (study.mechanism.calibrated) return fmt::format("calibrated: responses are {}", kLeftByCalibration);
   if (study.analysis.calibration == nullptr) return {};

@@ -235,6 +235,11 @@ std::optional<std::string> beyond_bound(const Model& model, FactorIndex factor, 
 /// mm and 1 deg". Errors that vary and errors of size zero are left out. Empty if no error remains.
 std::string held_errors_text(const Study& study);
 
+/// One line on the errors that a study with limits neither varies nor holds constant, so that they are zero: "left out:
+/// 59 of the 65 errors of the mechanism do not vary and are zero: ...". Empty if there are none, if errors do not vary
+/// together, if the study states no limit, or if the mechanism is not from a file.
+std::string left_out_text(const Study& study);
+
 /// One line that says how the study's machines are calibrated; empty if they are not calibrated.
 std::string calibration_text(const Study& study);
 

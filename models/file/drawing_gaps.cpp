@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -389,17 +390,22 @@ std::optional<Vector3> only_direction(const Matrix& effect, double nothing) {
   return complement(without_effect).col(0);
 }
 
-/// The displacements by the errors of a part, as columns in its axes.
-Matrix displacements_of(const Mechanism& mechanism, std::size_t limb, std::size_t frame) {
-  const std::vector<bool> all(mechanism.factors.size(), true);
-  return stated_columns(mechanism, all, limb, frame).bottomRows<3>();
+/// [errors] Whether an error is that of a feature of kind `distance`.
+std::vector<bool> errors_of_distances(const Mechanism& mechanism) {
+  std::vector<bool> found(mechanism.factors.size(), false);
+  for (const Feature& feature : mechanism.features) {
+    if (feature.kind != FeatureKind::distance) continue;
+    for (const FactorIndex error : feature.errors()) found[error.value] = true;
+  }
+  return found;
 }
 
 /// The rest of the clause "rod_1 displaces ...", if the error displaces its part without rotating it, and obliquely to
-/// the only direction that has an effect. Empty for any other error, and if the errors of the part together reach this
-/// direction.
+/// the only direction that has an effect. Empty for any other error, and if errors of the part together reach this
+/// direction: all of its errors or, for the error of a distance, those of its distances. distances:
+/// errors_of_distances().
 std::string oblique_displacement(const Mechanism& mechanism, const PartEffects& effects, double nothing,
-                                 std::size_t error) {
+                                 const std::vector<bool>& distances, std::size_t error) {
   constexpr double kAlong = 0.9998;   // cosine of a degree
   constexpr double kAcross = 0.0175;  // sine of a degree; errors_without_effect() asks about such errors
   const chain::ErrorTerm& first = mechanism.terms[error].front();
@@ -408,24 +414,30 @@ std::string oblique_displacement(const Mechanism& mechanism, const PartEffects& 
   if (!only || column.head<3>().norm() > 0.0 || !(column.norm() > 0.0)) return {};
   const double cosine = std::abs(only->dot(column.tail<3>().normalized()));
   if (cosine > kAlong || cosine < kAcross) return {};
-  const Matrix spanned = complement(complement(displacements_of(mechanism, first.limb, first.frame)));
+  const std::vector<bool> all(distances.size(), true);
+  const Matrix columns = stated_columns(mechanism, distances[error] ? distances : all, first.limb, first.frame);
+  const Matrix spanned = complement(complement(Matrix(columns.bottomRows<3>())));
   if ((spanned.transpose() * *only).norm() > 1.0 - kDependent) return {};
   return fmt::format(
-      "{:.0f} deg off {}, the only direction of frame {} in which a displacement {} has an effect to first "
-      "order (a feature of kind distance states the length of a rod)",
+      "{:.0f} deg off {}, the only direction of frame {} in which a displacement {} has an effect to first order ({})",
       std::acos(cosine) * 180.0 / std::numbers::pi, direction_words(*only), first.frame,
-      part_words(mechanism, mechanism.limbs[first.limb], first.frame));
+      part_words(mechanism, mechanism.limbs[first.limb], first.frame),
+      distances[error] ? "the direction of a rod leads from one of its joints to the other"
+                       : "a feature of kind distance states the length of a rod");
 }
 
 }  // namespace
 
 std::vector<std::string> oblique_displacements(const Mechanism& mechanism) {
-  if (mechanism.first_named == mechanism.factors.size()) return {};
+  const std::vector<bool> distances = errors_of_distances(mechanism);
+  const bool has_none = std::ranges::none_of(distances, std::identity());
+  if (has_none && mechanism.first_named == mechanism.factors.size()) return {};
   const PartEffects effects = part_effects(mechanism);
   const double nothing = largest_rounding(mechanism, effects);
   std::vector<Said<std::string>> said;
-  for (std::size_t f = mechanism.first_named; f < mechanism.factors.size(); ++f) {
-    std::string words = oblique_displacement(mechanism, effects, nothing, f);
+  for (std::size_t f = 0; f < mechanism.factors.size(); ++f) {
+    if (f < mechanism.first_named && !distances[f]) continue;
+    std::string words = oblique_displacement(mechanism, effects, nothing, distances, f);
     if (!words.empty()) say(said, std::move(words), mechanism.factors[f].name);
   }
   std::vector<std::string> list;

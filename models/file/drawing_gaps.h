@@ -22,10 +22,11 @@ std::vector<std::string> uncovered_directions(const Mechanism& mechanism);
 /// such error has an effect.
 std::vector<std::string> errors_without_effect(const Mechanism& mechanism);
 
-/// Clauses such as "rod_1 displaces 73 deg off ..." about errors with names of their own. In the part of such an error,
-/// displacements have an effect to first order in only one direction, for example along a rod between balls. The error
-/// displaces the part obliquely to this direction, and the errors of the part together do not reach it. Such an error
-/// is often meant for the length of a rod, but only a part of it counts.
+/// Clauses such as "rod_1 displaces 73 deg off ..." about errors with names of their own and errors of distances. In
+/// the part of such an error, displacements have an effect to first order in only one direction, for example along a
+/// rod between balls. The error displaces the part obliquely to this direction, and the errors of the part together
+/// (for a distance, those of its distances) do not reach it. Such an error is often meant for the length of a rod, but
+/// only a part of it counts.
 std::vector<std::string> oblique_displacements(const Mechanism& mechanism);
 
 /// Clauses about doubtful zones: a location or an orientation without datums, and an orientation zone so wide that it

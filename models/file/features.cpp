@@ -198,7 +198,7 @@ class FeatureBuilder {
   /// joint that slides.
   std::string distance_text(const FeatureLines& lines, const FeatureFrame& at, const Limb& limb,
                             std::size_t joint) const {
-    constexpr double kMostlyAlong = 0.5;  // smallest cosine of the angle between the direction and the line to the end
+    constexpr double kMostlyAlong = 0.966;  // cosine of 15 deg, the largest angle from the line to the other end
     const std::string off = "is off along its direction";
     const auto end = slides(limb.joints[joint]) ? std::nullopt : other_end(lines.part, limb, joint);
     if (!end) return off;

@@ -65,14 +65,28 @@ class WorkspaceCorners(ProgramTest):
         self.assertLess(0, at_centre)
         self.assertLess(at_centre, with_corners)
         said = self.check(ONE_POSE, limit)
-        self.assertIn(f"# corners: of the first 100 machines, {at_centre} miss a limit at these poses, and "
+        self.assertIn(f"# corners: of the first 100 machines, {at_centre} miss a limit at the poses of the study, and "
                       f"{with_corners - at_centre} more at a corner of the workspace; to study the corners, write "
                       'select = "grid", count = { x = 2, y = 2, z = 2 }\n', said)
 
+    def test_a_run_and_its_report_say_what_the_verdict_does_not_cover(self):
+        study = STUDY.replace("samples", 'factors = ["zero_1", "zero_3"]\nyield = 0.5\nsamples').replace("100", "3000")
+        self.write("study.toml", study.format(poses=ONE_POSE, limit='position = "0.03 mm"'))
+        left_out = "eft out: 1 of the 3 errors of the mechanism does not vary and is zero: zero_2"
+        at_corners = re.compile(r"of the first 100 machines, \d+ miss a limit at the poses of the study, and \d+ more at a corner", re.I)
+        messages = " ".join(self.poesy("run", "study.toml", "-o", "out.h5").stderr.decode().split())
+        self.assertIn("note: l" + left_out, messages)
+        self.assertRegex(messages, "note: " + at_corners.pattern)
+        self.assertIn("l" + left_out, " ".join(self.succeeds("show", "out.h5").split()))
+        self.succeeds("report", "out.h5", "-o", "out.html")
+        advice = re.search("What to do</dt>\\s*<dd>(.*?)</dd>", (self.folder / "out.html").read_text(encoding="utf-8"), re.S)[1]
+        self.assertIn("L" + left_out, advice)
+        self.assertRegex(advice, at_corners)
+
     def test_corners_that_are_studied(self):
         said = self.check(ONE_POSE.replace("= 1", "= 2"), 'position = "0.03 mm"')
-        self.assertRegex(said, "# corners: of the first 100 machines, [1-9][0-9]* miss a limit at these poses, and no "
-                               "further one at a corner of the workspace\n")
+        self.assertRegex(said, "# corners: of the first 100 machines, [1-9][0-9]* miss a limit at the poses of the study, and "
+                               "no further one at a corner of the workspace\n")
 
     def test_limits_over_several_poses_are_left_out(self):
         self.assertNotIn("# corners", self.check(ONE_POSE, 'z = { spread = "0.05 mm" }'))

@@ -10,6 +10,7 @@
 #include "engine/kinds/allocation/result.h"
 #include "engine/kinds/allocation/summary.h"
 #include "engine/kinds/confirming_study.h"
+#include "engine/kinds/corner_machines.h"
 #include "engine/kinds/what_if/what_if.h"
 
 namespace poesy::allocation {
@@ -101,6 +102,7 @@ void add_prediction(const ReportedResult& reported, Page& page) {
                .yield_high = found.certificate.ci_high,
                .conf_level = found.certificate.conf_level},
               "drawing", page);
+  add_not_covered(certificate, *reported.model, reported.stored.poses, page);
 }
 
 }  // namespace poesy::allocation

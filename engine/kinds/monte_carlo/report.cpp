@@ -13,6 +13,7 @@
 
 #include "engine/base/nan.h"
 #include "engine/base/units.h"
+#include "engine/kinds/corner_machines.h"
 #include "engine/kinds/monte_carlo/advice.h"
 #include "engine/kinds/monte_carlo/drivers.h"
 #include "engine/kinds/monte_carlo/kind.h"
@@ -401,33 +402,40 @@ std::vector<double> pose_weights(const Result& found, const Study& study) {
   return weights;
 }
 
-constexpr std::string_view kWhatToDo = "What to do";
+/// Adds to the page the section that predicts the yield at other sizes of the errors. Returns a sentence on the changes
+/// that raise the yield most; empty if there is no prediction or no such change.
+std::string add_prediction(const ReportedResult& reported, Page& page) {
+  const Result& found = monte_carlo_of(reported.stored);
+  const YieldResult& yield = *found.machines->yield;
+  return add_what_if({.study = *reported.study,
+                      .model = *reported.model,
+                      .poses = reported.stored.poses,
+                      .errors = sized_errors(*reported.study, reported.stored.poses),
+                      .pose_weights = pose_weights(found, *reported.study),
+                      .machines = yield.machines,
+                      .yield = yield.value,
+                      .yield_low = yield.ci_low,
+                      .yield_high = yield.ci_high,
+                      .conf_level = yield.conf_level},
+                     "yield", page);
+}
 
-/// Adds to the page the section that predicts the yield at other sizes of the errors, and states in the summary which
-/// changes raise the yield most. Adds nothing if there is no yield, or if machines are calibrated.
+/// Adds the section with predicted yields, unless machines are calibrated, and states in the summary which changes
+/// raise the yield most and what the verdict does not cover. Adds nothing if there is no yield.
 void add_solved_page(const ReportedResult& reported, Page& page) {
   const Result& found = monte_carlo_of(reported.stored);
   const Study& study = *reported.study;
   const bool fits = study.analysis.kind == &kStudy && study.analysis.draws == Draws::per_machine &&
                     study.analysis.factors.size() == reported.stored.factors.size() &&
                     reported.model->description().responses.size() == reported.stored.responses.size();
-  if (!fits || !found.machines || !found.machines->yield || study.analysis.calibration != nullptr) return;
+  if (!fits || !found.machines || !found.machines->yield) return;
   if (found.poses() == 0 || found.poses() != reported.stored.poses.size()) return;
-  const YieldResult& yield = *found.machines->yield;
-  const std::string changes = add_what_if({.study = study,
-                                           .model = *reported.model,
-                                           .poses = reported.stored.poses,
-                                           .errors = sized_errors(study, reported.stored.poses),
-                                           .pose_weights = pose_weights(found, study),
-                                           .machines = yield.machines,
-                                           .yield = yield.value,
-                                           .yield_low = yield.ci_low,
-                                           .yield_high = yield.ci_high,
-                                           .conf_level = yield.conf_level},
-                                          "yield", page);
+  const std::string changes = study.analysis.calibration == nullptr ? add_prediction(reported, page) : std::string();
   const auto line = std::ranges::find(page.answer, kWhatToDo, &AnswerLine::first);
-  if (changes.empty() || line == page.answer.end()) return;
-  line->second = advice(reported.stored, response_named(reported.stored, default_ranking(reported.stored)), changes);
+  if (!changes.empty() && line != page.answer.end()) {
+    line->second = advice(reported.stored, response_named(reported.stored, default_ranking(reported.stored)), changes);
+  }
+  add_not_covered(study, *reported.model, reported.stored.poses, page);
 }
 
 /// The summary at the top of the report: the expected values of a response, and its worst pose.

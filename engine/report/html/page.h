@@ -68,6 +68,9 @@ class Section {
 /// A line of the summary at the top of a report: a label ("Answer", "How sure", "What to do"), and a sentence or two.
 using AnswerLine = std::pair<std::string, std::string>;
 
+/// The label of the line that advises what to do next.
+inline constexpr std::string_view kWhatToDo = "What to do";
+
 /// The summary at the top of a report: at most five lines.
 using Answer = std::vector<AnswerLine>;
 

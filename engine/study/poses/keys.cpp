@@ -28,9 +28,11 @@ Range read_range(const StudyValue& value, Dimension dimension) {
   const auto as_written = [](const StudyValue& end) {
     return end.is_text() ? printable(end.text()) : shortest(end.number());
   };
-  value.fail(
-      "runs from " + as_written(ends[0]) + " to " + as_written(ends[1]),
-      is_time ? "write the start first, and an end after it" : "write the lower end first, and two different ends");
+  value.fail("runs from " + as_written(ends[0]) + " to " + as_written(ends[1]),
+             is_time ? "write the start first, and an end after it"
+             : range.lower == range.upper
+                 ? "write two different ends; a narrow range, or a grid with one point, keeps it constant"
+                 : "write the lower end first, and two different ends");
 }
 
 void read_workspace(const StudyValue& value, Study& study, const Reading&) {

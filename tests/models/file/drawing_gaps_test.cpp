@@ -119,6 +119,28 @@ TEST(DrawingGaps, AnErrorObliqueToARodIsAskedAbout) {
   EXPECT_EQ(found("\"q\"", "\"delta_x\""), Clauses{});  // an arm, which acts in many directions
 }
 
+/// The direction of a rod is asked about even if other errors displace its part in all directions.
+TEST(DrawingGaps, ADistanceObliqueToARodIsAskedAbout) {
+  const auto found = [](const std::string& direction) {
+    const std::string ball = R"({ name = "C", type = "S", at = ["70 mm", "70 mm", "200 mm"] } ])";
+    const std::string rod =
+        "\nfeatures = [ { name = \"rod\", joint = \"C\", kind = \"distance\", direction = " + direction +
+        ", tolerance = \"0.02 mm\" } ]";
+    return oblique_displacements(read(replaced(kServoHexapod, {ball, ball + rod}) +
+                                      "\n[[error]]\nname = \"seat\"\nlimb = [1]\nframe = \"B\"\n"
+                                      "component = [\"delta_x\", \"delta_y\", \"delta_z\"]\n"));
+  };
+  EXPECT_EQ(found("[-60, -10, 200]"), Clauses{});  // from B to C
+  for (const auto& [direction, told] : {std::pair("[-60, 10, 200]", "rod_1, rod_2 and rod_3 displace 5 deg off ("),
+                                        {"\"x\"", "rod_1, rod_2 and rod_3 displace 73 deg off ("}}) {
+    const Clauses oblique = found(direction);
+    ASSERT_EQ(oblique.size(), 1U) << direction;
+    EXPECT_TRUE(oblique[0].starts_with(told)) << oblique[0];
+    EXPECT_TRUE(oblique[0].ends_with("(the direction of a rod leads from one of its joints to the other)"))
+        << oblique[0];
+  }
+}
+
 TEST(DrawingGaps, ASizeFarFromTheLengthOfItsPartIsDoubtful) {
   const auto doubts = [](const std::string& size) {
     return doubtful_zones(read(replaced(

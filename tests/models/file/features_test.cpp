@@ -89,6 +89,7 @@ TEST(Features, SayWhetherADistanceMakesItsPartLonger) {
   EXPECT_NE(rod(R"(joint = "C")", towards_b).find(shorter), std::string::npos);
   EXPECT_NE(rod(after_b, towards_c).find(shorter), std::string::npos);
   EXPECT_NE(rod(after_b, towards_b).find(longer), std::string::npos);
+  EXPECT_EQ(rod(R"(joint = "C")", R"([1, 0, "-1.5"])").find(longer), std::string::npos);  // oblique to the rod
   EXPECT_NE(rod(R"(joint = "B")", R"("-z")").find(shorter), std::string::npos);  // a carriage, towards the rail's foot
   EXPECT_NE(rod(R"(joint = "B")", R"("z")").find(longer), std::string::npos);
   const std::string on_platform = R"(joint = "C", axis = 2, part = "after")";
