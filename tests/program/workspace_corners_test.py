@@ -75,8 +75,8 @@ class WorkspaceCorners(ProgramTest):
         left_out = "eft out: 1 of the 3 errors of the mechanism does not vary and is zero: zero_2"
         at_corners = re.compile(r"of the first 100 machines, \d+ miss a limit at the poses of the study, and \d+ more at a corner", re.I)
         messages = " ".join(self.poesy("run", "study.toml", "-o", "out.h5").stderr.decode().split())
-        self.assertIn("note: l" + left_out, messages)
-        self.assertRegex(messages, "note: " + at_corners.pattern)
+        self.assertIn("poesy: l" + left_out, messages)
+        self.assertRegex(messages, at_corners)
         self.assertIn("l" + left_out, " ".join(self.succeeds("show", "out.h5").split()))
         self.succeeds("report", "out.h5", "-o", "out.html")
         advice = re.search("What to do</dt>\\s*<dd>(.*?)</dd>", (self.folder / "out.html").read_text(encoding="utf-8"), re.S)[1]
