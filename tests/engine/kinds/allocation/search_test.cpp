@@ -248,12 +248,12 @@ TEST(ToleranceSearch, KnowsThatALimitWithRoomDependsOnAPart) {
 // proportional to exp(-u^2 / 2 s^2) / s, times the probability of |z| < u, and that of |z| in the same way.
 TEST(ToleranceSearch, DividesTheSavingByDecidingMachines) {
   constexpr double kSecond = 0.97;
-  constexpr std::size_t kMachines = 100'000;
+  constexpr std::size_t kDrawn = 100'000;
   const auto sum_and_difference = [](std::span<const double> x, double, std::span<double> y) {
     y[0] = x[0] + x[1];
     y[1] = kSecond * (x[0] - x[1]);
   };
-  FunctionStudy study(2, sum_and_difference, 1.0, kMachines, {"y", "z"});
+  FunctionStudy study(2, sum_and_difference, 1.0, kDrawn, {"y", "z"});
   study.asked().yield = 0.99;
   for (std::size_t i = 0; i < 2; ++i) study.asked().parts.push_back(part_of(i, reciprocal(0.0, 1.0)));
   const allocation::Result found = study.find();
@@ -270,7 +270,7 @@ TEST(ToleranceSearch, DividesTheSavingByDecidingMachines) {
   const double by_y = near_limits(s, kSecond * s);
   const double by_z = near_limits(kSecond * s, s);
   const double share = by_z / (by_y + by_z);
-  const double machines = kMachines * (by_y + by_z);
+  const double machines = kDrawn * (by_y + by_z);
   EXPECT_GT(share, 0.35);
   EXPECT_NEAR(found.deciding_share(1, 0), share, 4.0 * std::sqrt(share * (1.0 - share) / machines));  // alpha 6e-5
   EXPECT_NEAR(found.deciding_share(0, 0) + found.deciding_share(1, 0), 1.0, 1e-12);
