@@ -13,6 +13,7 @@
 #include "engine/base/index.h"
 #include "engine/kinds/calibrated_model.h"
 #include "engine/report/html/parts.h"
+#include "engine/report/tables.h"
 #include "engine/run/evaluate_unit.h"
 #include "engine/run/result.h"
 #include "engine/study/plan.h"
@@ -89,14 +90,15 @@ std::string corners_text(const CornerMachines& found, const ModelDescription& mo
          fmt::format("; to study the corners, write select = \"grid\", count = {{ {} }}", fmt::join(counts, ", "));
 }
 
-void add_not_covered(const Study& study, const Model& model, const PoseSet& poses, Page& page) {
+void add_not_covered(const Study& study, const Model& model, const StoredResult& result, Page& page) {
   const auto line = std::ranges::find(page.answer, kWhatToDo, &AnswerLine::first);
   if (line == page.answer.end()) return;
-  if (std::string left_out = left_out_text(study); !left_out.empty()) {
-    line->second += " " + as_sentence(std::move(left_out));
+  std::vector<std::string> clauses{left_out_text(study), rejected_text(result)};
+  const auto found = corner_machines(study, model, result.poses, feasible_corners(study.poses, model));
+  if (found && found->only_at_corners() > 0) clauses.push_back(corners_text(*found, study.model()));
+  for (std::string& clause : clauses) {
+    if (!clause.empty()) line->second += " " + as_sentence(std::move(clause));
   }
-  const auto found = corner_machines(study, model, poses, feasible_corners(study.poses, model));
-  if (found && found->only_at_corners() > 0) line->second += " " + as_sentence(corners_text(*found, study.model()));
 }
 
 }  // namespace poesy

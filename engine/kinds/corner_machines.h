@@ -6,6 +6,7 @@
 
 #include "engine/model/model.h"
 #include "engine/report/html/page.h"
+#include "engine/result/result_file.h"
 #include "engine/study/study.h"
 
 namespace poesy {
@@ -34,8 +35,8 @@ std::optional<CornerMachines> corner_machines(const Study& study, const Model& m
 std::string corners_text(const CornerMachines& found, const ModelDescription& model);
 
 /// Adds to the line "What to do" of a report what its verdict on the limits does not cover: errors that are left out
-/// (left_out_text()), and corners of the workspace at which further machines miss a limit. model: the mechanism of the
-/// study. poses: the poses of the study.
-void add_not_covered(const Study& study, const Model& model, const PoseSet& poses, Page& page);
+/// (left_out_text()), poses of the workspace that were rejected, and corners at which further machines miss a limit.
+/// model: the mechanism of the study.
+void add_not_covered(const Study& study, const Model& model, const StoredResult& result, Page& page);
 
 }  // namespace poesy

@@ -59,7 +59,8 @@ std::vector<std::string> sizes_of_distributions(const StoredResult& result) {
     const auto [least, most] = std::ranges::minmax(sigmas);
     const std::string range = least == most ? fmt::format("a standard deviation of {:.4g}", most)
                                             : fmt::format("standard deviations of {:.4g} to {:.4g}", least, most);
-    sizes.push_back(fmt::format("{} {}with {} {}", sigmas.size(), key.second, range, key.first));
+    const std::string unit = key.first == "1" ? "" : " " + key.first;
+    sizes.push_back(fmt::format("{} {}with {}{}", sigmas.size(), key.second, range, unit));
   }
   return sizes;
 }

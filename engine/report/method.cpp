@@ -11,6 +11,7 @@
 #include "engine/model/calibrated.h"
 #include "engine/report/display.h"
 #include "engine/report/drawn_errors.h"
+#include "engine/report/html/parts.h"
 #include "engine/report/solves.h"
 #include "engine/report/sources.h"
 #include "engine/report/tables.h"
@@ -194,7 +195,8 @@ std::string poses_sentence(const StoredResult& result, const StudyWords& words) 
     text += machines ? fmt::format(", for {} machines{}", samples, draws_of_machines(result))
                      : fmt::format(", with {} samples at each", samples);
   }
-  return text + ".";
+  const std::string rejected = words.own_poses ? rejected_text(result) : std::string();
+  return text + "." + (rejected.empty() ? "" : " " + as_sentence(rejected));
 }
 
 /// A sentence on the errors that a calibration removes before responses are computed, or on the settings of the fit to

@@ -102,7 +102,7 @@ void add_prediction(const ReportedResult& reported, Page& page) {
                .yield_high = found.certificate.ci_high,
                .conf_level = found.certificate.conf_level},
               "drawing", page);
-  add_not_covered(certificate, *reported.model, reported.stored.poses, page);
+  add_not_covered(certificate, *reported.model, reported.stored, page);
 }
 
 }  // namespace poesy::allocation

@@ -435,7 +435,7 @@ void add_solved_page(const ReportedResult& reported, Page& page) {
   if (!changes.empty() && line != page.answer.end()) {
     line->second = advice(reported.stored, response_named(reported.stored, default_ranking(reported.stored)), changes);
   }
-  add_not_covered(study, *reported.model, reported.stored.poses, page);
+  add_not_covered(study, *reported.model, reported.stored, page);
 }
 
 /// The summary at the top of the report: the expected values of a response, and its worst pose.
