@@ -206,7 +206,7 @@ std::optional<SelectedPoses> find_poses(const Study& study, const Model& model, 
   try {
     return select_poses(study.poses, model, watch);
   } catch (const InputError&) {
-    // a wrong size of the mechanism is a likely reason, and nothing else would be said of it
+    // A wrong size of the mechanism is a likely reason, and no later message would mention it.
     for (const std::string& doubt : geometry_doubts(study.mechanism)) say(Message::warning, doubt);
     throw;
   }

@@ -32,7 +32,7 @@ struct SearchOptions {
 };
 
 /// Finds the poses that the study selects, with progress on stderr. None if the search was stopped. Throws InputError
-/// as select_poses() does.
+/// as select_poses() does, after a warning for each doubtful size of the mechanism (geometry_doubts()).
 std::optional<SelectedPoses> find_poses(const Study& study, const Model& model, const SearchOptions& options);
 
 /// The paths of the study file and of the files that it names.

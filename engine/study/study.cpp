@@ -195,8 +195,14 @@ std::string held_errors_text(const Study& study) {
   return fmt::format("held constant{}: {} at {}", unless, owners_text(held, study), sizes_text(held, study));
 }
 
+/// The first eight names as a list, and the number of the others: "a, b, c, d, e, f, g, h and 3 more".
+static std::string first_names(std::span<const std::string_view> names) {
+  const std::size_t shown = std::min<std::size_t>(names.size(), 8);
+  const std::string more = names.size() == shown ? "" : fmt::format(" and {} more", names.size() - shown);
+  return fmt::format("{}{}", fmt::join(names.first(shown), ", "), more);
+}
+
 std::string left_out_text(const Study& study) {
-  constexpr std::size_t kMost = 8;
   const Analysis& analysis = study.analysis;
   if (!study.mechanism.file || analysis.limits.empty() || analysis.kind->varies != Varies::together) return {};
   std::vector<FactorIndex> present = analysis.factors;
@@ -207,26 +213,20 @@ std::string left_out_text(const Study& study) {
     if (std::ranges::find(present, FactorIndex(f)) == present.end()) names.push_back(all[f].name);
   }
   if (names.empty()) return {};
-  const std::size_t count = names.size();
-  names.resize(std::min(count, kMost));
-  return fmt::format("left out: {} of the {} errors of the mechanism {} zero: {}{}", count, all.size(),
-                     count == 1 ? "does not vary and is" : "do not vary and are", fmt::join(names, ", "),
-                     count == names.size() ? "" : fmt::format(" and {} more", count - names.size()));
+  return fmt::format("left out: {} of the {} errors of the mechanism {} zero: {}", names.size(), all.size(),
+                     names.size() == 1 ? "does not vary and is" : "do not vary and are", first_names(names));
 }
 
 std::string calibration_text(const Study& study) {
   if (study.mechanism.calibrated) return fmt::format("calibrated: responses are {}", kLeftByCalibration);
   if (study.analysis.calibration == nullptr) return {};
   const CalibrationTable& table = *study.analysis.calibration;
-  constexpr std::size_t kMost = 8;
   std::vector<std::string_view> fitted;
   for (const FittedErrors& one : table.fit) fitted.push_back(one.name);
-  const std::size_t more = fitted.size() - std::min(fitted.size(), kMost);
-  fitted.resize(fitted.size() - more);
   return fmt::format(
-      "calibrated: {}{} of each machine {} fitted to measured {} at {}; responses are what its controller leaves",
-      fmt::join(fitted, ", "), more == 0 ? "" : fmt::format(" and {} more", more), table.fit.size() == 1 ? "is" : "are",
-      fmt::join(table.measured, ", "), table.poses ? "separate poses" : "the study's poses");
+      "calibrated: {} of each machine {} fitted to measured {} at {}; responses are what its controller leaves",
+      first_names(fitted), table.fit.size() == 1 ? "is" : "are", fmt::join(table.measured, ", "),
+      table.poses ? "separate poses" : "the study's poses");
 }
 
 }  // namespace poesy

@@ -101,8 +101,8 @@ class SlurmTest(ResumptionTest):
     def test_time_limit(self):
         """A shard that takes longer than its job may goes back into the queue, until it is done; the merge waits."""
         expected = self.undisturbed(LONG)
-        # Slurm looks every half minute, or later on a busy machine, which jobs to signal: that must not be after the
-        # job's time.
+        # Slurm checks every half minute, or later on a busy machine, which jobs to signal. The job's time must not end
+        # before that.
         shards = self.submit_shards(1, "--time=2", "--signal=B:TERM@115", self.standing(TERM_WAITS))
         merge = self.submit_merge(shards, 1)
         self.completes(shards)

@@ -1,5 +1,5 @@
-"""What `check` says of a workspace: the travel of its drives, compared with closed-form kinematics, and the machines that
-miss a limit only at its corners, compared with runs at these poses."""
+"""What `check`, `run` and reports say of a workspace: the travel of the drives, compared with closed-form kinematics, and
+the machines that miss a limit only at a corner, compared with runs at these poses."""
 
 import itertools
 import os
@@ -51,7 +51,7 @@ class WorkspaceCorners(ProgramTest):
         return self.poesy("check", "study.toml").stdout.decode()
 
     def rejects(self, poses, limit):
-        """Of the machines of a run at these poses: how many."""
+        """The number of machines that a run at these poses rejects."""
         self.write("poses.csv", "x,y,z\n" + "".join(",".join(map(repr, pose)) + "\n" for pose in poses))
         self.write("study.toml", STUDY.format(poses='select = "file", file = "poses.csv"', limit=limit))
         (self.folder / "out.h5").unlink(missing_ok=True)

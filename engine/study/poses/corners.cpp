@@ -1,27 +1,24 @@
 #include "engine/study/poses/corners.h"
 
 #include <cstddef>
-#include <utility>
-#include <vector>
 
-#include "engine/study/poses/workspace.h"
+#include "engine/base/error.h"
 
 namespace poesy {
 
 PoseSet feasible_corners(const PoseSelection& selection, const Model& model) {
   constexpr std::size_t kMostCoordinates = 8;
-  const Workspace workspace(selection, model);
-  const std::size_t coordinates = workspace.coordinates();
+  const std::size_t coordinates = selection.workspace.size();
   if (coordinates == 0 || coordinates > kMostCoordinates) return {};
-  std::vector<double> values;
-  std::vector<double> scaled(coordinates);
-  std::vector<double> pose(coordinates);
-  for (std::size_t corner = 0; corner < std::size_t{1} << coordinates; ++corner) {
-    for (std::size_t c = 0; c < coordinates; ++c) scaled[c] = (corner >> (coordinates - 1 - c)) & 1U ? 1.0 : 0.0;
-    workspace.unscale(scaled, pose);
-    if (workspace.judge(pose).feasible()) values.insert(values.end(), pose.begin(), pose.end());
+  PoseSelection corners = selection;
+  corners.select = PoseSelection::Select::grid;
+  corners.grid_counts.assign(coordinates, 2);
+  corners.count = std::size_t{1} << coordinates;
+  try {
+    return select_poses(corners, model).poses;
+  } catch (const InputError&) {  // no corner is feasible
+    return {};
   }
-  return {coordinates, std::move(values)};
 }
 
 }  // namespace poesy
