@@ -111,7 +111,7 @@ class Resume(ResumptionTest):
                     self.assertEqual(self.resume_to_end(), expected)
 
     def test_more_of_the_given_machines(self):
-        few = GIVEN.replace("samples = 4200", "samples = 1100")
+        few = GIVEN.replace("samples = 9200", "samples = 1100")
         expected = self.undisturbed(GIVEN)
         self.write("study.toml", few)
         self.succeeds("run", "study.toml", "-o", "out.h5", "--keep-checkpoint", "--quiet")

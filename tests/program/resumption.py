@@ -1,4 +1,7 @@
-"""Shared by the tests of checkpoints: for each kind, a study that takes about a second, and stopping its run."""
+"""Shared by the tests of checkpoints: for each kind, a study that takes about a second, and stopping its run.
+
+A time limit ends a run when the first work unit is complete. While one thread is held up in that unit, another thread
+completes at most 7 units (4 per thread are in progress). So each study has more than 8 units: none is over by then."""
 
 import os
 import re
@@ -55,7 +58,7 @@ RELATIVE = f"""\
 format = "poesy-study"
 version = 1
 mechanism = {{ model = "3-prs" }}
-poses = {{ count = {POSES * 5 // 4} }}
+poses = {{ count = {POSES * 3 // 4} }}
 errors = {{ linear = {{ distribution = "uniform", half_width = "0.1 mm" }} }}
 [[response]]
 name = "rise"
@@ -69,7 +72,7 @@ relative_to = "previous"
 [analysis]
 kind = "monte-carlo"
 draws = "per machine"
-samples = 6200
+samples = 9200
 limits = {{ rise = "0.4 mm", step = "0.5 mrad" }}
 """
 SOBOL = HEAD + """\
@@ -176,7 +179,7 @@ limits = { gauge = ["-60 um", "90 um"], push = { to = "80 um" }, tilt = { to = "
 # Given machines, whose other errors are drawn, and responses that are differences between two poses.
 GIVEN = (DESIGNED_HEAD[:DESIGNED_HEAD.index("[errors.override]")] + """\
 machines = { columns = ["rail_x_1", "rod_2", "batch"], rows = [
-""" + "".join(f"  [{k % 83 - 41}e-6, {k % 59 - 29}e-6, {k % 37 - 18}e-6],\n" for k in range(4200)) + """\
+""" + "".join(f"  [{k % 83 - 41}e-6, {k % 59 - 29}e-6, {k % 37 - 18}e-6],\n" for k in range(9200)) + """\
 ] }
 [[response]]
 name = "rise"
@@ -190,7 +193,7 @@ relative_to = "previous"
 kind = "monte-carlo"
 draws = "per machine"
 factors = ["face_*", "rail_*", "rod_*", "stop_*", "batch"]
-samples = 4200
+samples = 9200
 limits = { rise = ["-6 um", "8 um"], step = "12 um" }
 """)
 ZONES = DESIGNED_HEAD + """\
@@ -206,14 +209,14 @@ FORCES = f"""\
 format = "poesy-study"
 version = 1
 mechanism.file = "{MECHANISMS / "linear-delta.toml"}"
-poses.count = {POSES // 2}
+poses.count = 12
 [errors]
 linear = {{ distribution = "normal", sigma = "0.05 mm" }}
 angular = {{ distribution = "normal", sigma = "0.02 deg" }}
 [analysis]
 kind = "monte-carlo"
 draws = "per pose"
-samples = 300
+samples = 200
 limits = {{ position = "0.6 mm", strain_energy = "5 mJ" }}
 """
 STUDIES = {"sensitivity": SENSITIVITY, "by series": BY_SERIES, "monte-carlo": MONTE_CARLO, "machines": MACHINES, "uniform errors": UNIFORM,
@@ -223,8 +226,8 @@ STUDIES = {"sensitivity": SENSITIVITY, "by series": BY_SERIES, "monte-carlo": MO
            "coupling": COUPLING, "fidelities": FIDELITIES}
 # Replacements for tests that do not stop a run: each study has only a few work units, at least one for each of five
 # shards.
-FEWER = {"samples = 12300": "samples = 4300", "samples = 62300": "samples = 12300", "samples = 6200": "samples = 4200",
-         "samples = 300\n": "samples = 100\n", "samples = 30000": "samples = 5000", "samples = 12000": "samples = 4000",
+FEWER = {"samples = 12300": "samples = 4300", "samples = 62300": "samples = 12300", "samples = 9200": "samples = 4200",
+         "samples = 200\n": "samples = 100\n", "samples = 30000": "samples = 5000", "samples = 12000": "samples = 4000",
          "count = 4000": "count = 300", "count = 1500": "count = 100", "count = 5000": "count = 500"}
 
 
