@@ -74,8 +74,8 @@ constexpr std::array kWidths{29, 24, 43, 71, 43, 71, 67, 24, 34, 34, 43, 67, 24,
                              24, 71, 48, 43, 48, 45, 34, 34, 34, 48, 45, 62, 45, 45, 38, 43, 24, 43, 43};
 /// Largest width of a sign in kSigns, in points; also used for letters beyond ASCII.
 constexpr double kWidestSign = 8.6;
-constexpr double kMinus = 6.7;      ///< width of a minus sign in mathematics, points
-constexpr double kTimesTen = 19.4;  ///< width of "\times10" with its spaces, points
+constexpr double kMinusWidth = 6.7;  ///< width of a minus sign in mathematics, points
+constexpr double kTimesTen = 19.4;   ///< width of "\times10" with its spaces, points
 constexpr double kExponentSign = 5.8;
 constexpr double kExponentDigit = 3.7;
 
@@ -154,7 +154,7 @@ std::optional<std::string> latex_number(const std::string& text) {
 double latex_number_width(std::string_view number) {
   const std::size_t e = std::min(number.find_first_of("eE"), number.size());
   double width = latex_width(number.substr(0, e));
-  if (number.starts_with('-') || number.starts_with('+')) width += kMinus - latex_width(number.substr(0, 1));
+  if (number.starts_with('-') || number.starts_with('+')) width += kMinusWidth - latex_width(number.substr(0, 1));
   if (e == number.size()) return width;
   const std::string power = std::to_string(std::stoi(std::string(number.substr(e + 1))));
   const double sign = power.starts_with('-') ? kExponentSign - kExponentDigit : 0.0;

@@ -233,13 +233,12 @@ Answer answer(const StoredResult& result) {
   lines.emplace_back(
       "How sure", fmt::format("{} of fresh machines are good, {} interval {} to {}.", percent_text(shown.value),
                               percent_text(shown.conf_level), percent_text(shown.ci_low), percent_text(shown.ci_high)));
-  lines.emplace_back(std::string(kWhatToDo),
-                     found.certified()
-                         ? fmt::format("Put the tolerances of the table below on the drawing. {}The study "
-                                       "of the certificate repeats the proof.",
-                                       keep_text(result))
-                         : "Do not use these tolerances as they are: study again with more samples or a "
-                           "lower yield. Another seed until the certificate is reached proves nothing.");
+  lines.emplace_back(kWhatToDo, found.certified()
+                                    ? fmt::format("Put the tolerances of the table below on the drawing. {}The study "
+                                                  "of the certificate repeats the proof.",
+                                                  keep_text(result))
+                                    : "Do not use these tolerances as they are: study again with more samples or a "
+                                      "lower yield. Another seed until the certificate is reached proves nothing.");
   return lines;
 }
 

@@ -178,7 +178,7 @@ Answer answer(const StoredResult& result) {
   // The text begins with "file", so that sentence() does not capitalise the name of the file.
   lines.emplace_back("Measured", sentence("file " + measured_text(found)));
   lines.emplace_back("How sure", sure_text(found));
-  lines.emplace_back("What to do", advice_text(found));
+  lines.emplace_back(kWhatToDo, advice_text(found));
   return lines;
 }
 

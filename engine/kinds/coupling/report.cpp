@@ -350,7 +350,7 @@ Answer answer(const StoredResult& result) {
                                 text(found.first_order_sum_max(r, z, all)), worst));
   }
   lines.emplace_back("How sure", fmt::format("Solved, not sampled, at {}.", counted(found.poses(), "pose", "poses")));
-  lines.emplace_back("What to do",
+  lines.emplace_back(kWhatToDo,
                      fmt::format("Make {} smaller first. Where sources cancel, do not count on it: their signs may "
                                  "differ from machine to machine.",
                                  found.subsets[largest]));

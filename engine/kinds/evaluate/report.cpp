@@ -361,10 +361,10 @@ Answer answer(const StoredResult& result) {
   if (std::string worst = worst_note(result, r); !worst.empty()) lines.emplace_back("Worst", worst + ".");
   lines.emplace_back("How sure", certainty_text(found));
   const bool limited = result.verdicts.has_value();
-  lines.emplace_back("What to do", !limited ? "State limits under [analysis.limits], and the report judges them."
-                                   : result.verdicts->passed()
-                                       ? "Nothing for these errors; others need a study of their own."
-                                       : "Begin with the rows and poses that are named below as the worst.");
+  lines.emplace_back(kWhatToDo, !limited ? "State limits under [analysis.limits], and the report judges them."
+                                : result.verdicts->passed()
+                                    ? "Nothing for these errors; others need a study of their own."
+                                    : "Begin with the rows and poses that are named below as the worst.");
   return lines;
 }
 

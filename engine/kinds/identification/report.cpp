@@ -166,7 +166,7 @@ Answer answer(const StoredResult& result) {
                                              counted(found.poses, "pose", "poses"), count_text(found.required_poses),
                                              counted(found.groups(), "size", "sizes"),
                                              groups_agree(found) ? "agree" : "do not agree on all errors"));
-  lines.emplace_back("What to do",
+  lines.emplace_back(kWhatToDo,
                      "Tolerances of errors that are absorbed do not load the mechanism. A sensitivity study with "
                      "factors = \"deforming\" says how much each of the others does.");
   return lines;

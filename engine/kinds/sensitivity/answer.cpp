@@ -316,7 +316,7 @@ Answer sensitivity_answer(const StoredResult& result) {
   }
   if (std::string where = worst_place_text(result); !where.empty()) lines.emplace_back("Where", std::move(where));
   lines.emplace_back("How sure", sure_text(result, ranked));
-  lines.emplace_back("What to do", advice(result, few));
+  lines.emplace_back(kWhatToDo, advice(result, few));
   return lines;
 }
 

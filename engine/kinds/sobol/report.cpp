@@ -423,7 +423,7 @@ Answer answer(const StoredResult& result) {
                               total ? "total index" : "Shapley effect", found.group_names[top], percent_text(low),
                               percent_text(high)));
   const bool wide = !(high - low <= 2.0 * kWide * shares.value(r, top));
-  lines.emplace_back("What to do",
+  lines.emplace_back(kWhatToDo,
                      wide ? "Take more samples before the order of the largest is relied on: their intervals are wide."
                           : advice(found, shares, r, total));
   return lines;

@@ -415,8 +415,9 @@ Answer answer(const StoredResult& result) {
                                ? "All designs have the same machines, so their differences are surer than their values."
                                : "All designs draw the same errors.";
   const std::size_t q = 0;
-  return {
-      {"Answer", best}, {"How sure", sure + best_certainty(found, q)}, {"What to do", what_to_do(result, found, q)}};
+  return {{"Answer", best},
+          {"How sure", sure + best_certainty(found, q)},
+          {std::string(kWhatToDo), what_to_do(result, found, q)}};
 }
 
 /// Designs as points of curves over the first key, with a curve for each combination of the other keys' values.

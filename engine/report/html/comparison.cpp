@@ -268,7 +268,7 @@ Answer comparison_answer(const Comparison& compared) {
                                                apart, counted(items, a.item_word, a.item_word + "s")));
   }
   lines.emplace_back(
-      "What to do",
+      kWhatToDo,
       "Look first at the settings that differ: they explain the other differences, as far as chance does not.");
   return lines;
 }
