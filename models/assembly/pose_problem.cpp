@@ -434,8 +434,8 @@ void PoseProblem::set_map() {
   for (const Index n : column) map.units.push_back(entries_[static_cast<std::size_t>(n)].unit);
   for (std::size_t row = 0; row < rows; ++row) {
     map.offset[row] = offset[index(row)];
-    double* to = map.matrix.data() + row / kRows * kRows * map.entries + row % kRows;
-    for (std::size_t v = 0; v < map.entries; ++v) to[v * kRows] = coordinates_(index(row), column[v]);
+    const std::size_t first = row / kRows * kRows * map.entries + row % kRows;
+    for (std::size_t v = 0; v < map.entries; ++v) map.matrix[first + v * kRows] = coordinates_(index(row), column[v]);
   }
 }
 

@@ -53,7 +53,7 @@ std::vector<double> some_values(std::size_t count, std::uint64_t seed) {
 }
 
 TEST(SmoothedValues, HaveMeanAndDeviationOfTheSample) {
-  for (const std::size_t count : {8, 9, 20, 41, 100}) {
+  for (const std::size_t count : {8U, 9U, 20U, 41U, 100U}) {
     for (std::uint64_t seed = 0; seed < 6; ++seed) {
       const std::vector<double> values = some_values(count, seed);
       const SmoothedValues parts(values);
@@ -107,7 +107,7 @@ TEST(SmoothedValues, HaveAQuantileThatIsTheInverseOfTheShare) {
       EXPECT_LE(x, parts.greatest());
       before = x;
       // A value that is not spread has a probability of its own, so its share is not unique.
-      const auto [low, high] = std::ranges::equal_range(parts.knots(), x);
+      const auto [low, high] = std::equal_range(parts.knots().begin(), parts.knots().end(), x);
       if (high - low > 1) continue;
       EXPECT_NEAR(parts.share(x), u, 1e-12);
     }

@@ -310,8 +310,8 @@ TEST(BlockOfParts, JoinsTheLimbsOfMechanisms) {
 TEST(BlockOfParts, JoinsCopiesOfLimbsWithNames) {
   std::ostringstream text;
   text << std::ifstream(POESY_TEST_DATA "/mechanisms/linear-delta.toml").rdbuf();
-  const Study study = study_of_limbs("linear-delta", "x = \"0.1 mm\"", "[4, 5, 6, 7, 8, 9]",
-                                     {registry().from_text(text.str(), "linear-delta.toml")});
+  const Catalog catalog{registry().from_text(text.str(), "linear-delta.toml")};  // the study refers to its entry
+  const Study study = study_of_limbs("linear-delta", "x = \"0.1 mm\"", "[4, 5, 6, 7, 8, 9]", catalog);
   const ModelDescription& model = study.model();
   std::vector<std::string> alike;
   for (const AllocatedPart& part : options_of(study).parts) {
