@@ -100,9 +100,11 @@ class PoseTrial {
         solves_(static_cast<double>(poses.size()) * static_cast<double>(study.analysis.samples)),
         plan_(Plan(study, first_of(poses, kPoses)).with_samples(samples(study.analysis.samples))) {}
 
-  /// Solves one unit, which merge() then merges repeatedly.
+  /// Solves one unit, which merge() then merges repeatedly. It lists no failed samples, because lists are merged only
+  /// in the order of the samples.
   void prepare() {
     unit_ = PoseUnitEvaluator(plan_, model_)(plan_.unit(0));
+    unit_.failed = {};
     effects_ = std::exchange(unit_.effects, std::nullopt);
     fill();
   }
