@@ -173,9 +173,10 @@ class MachineTrial {
     static_cast<void>(evaluate_(0));
     return share_of(unit_table_.unit(0).count);
   }
-  /// Solves one unit, which merge() then merges repeatedly.
+  /// Solves one unit, which merge() then merges repeatedly; it lists no failed samples, as in PoseTrial.
   void prepare() {
     unit_ = MachineUnitEvaluator(table_, model_)(0);
+    std::ranges::fill(unit_.failed, FailedSamples());
     begin();
     sketches_.clear();
     sketches_.resize(responses_);
