@@ -1,7 +1,8 @@
 """Shared by the tests of checkpoints: for each kind, a study that takes about a second, and stopping its run.
 
-A time limit ends a run when the first work unit is complete. While one thread is held up in that unit, another thread
-completes at most 7 units (4 per thread are in progress). So each study has more than 8 units: none is over by then."""
+Work units complete in order, and a run looks at its time limit whenever one is complete. While one of two threads is held
+up in the first unit, the other one can solve the next 7, because at most 4 units for each thread are in progress. So each
+study has more than 8 units, and its run cannot end before it looks at the limit."""
 
 import os
 import re

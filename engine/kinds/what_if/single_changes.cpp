@@ -102,6 +102,7 @@ std::vector<PredictedChange> single_changes(std::span<const SizedErrors> errors,
     for (const std::size_t p : slots) sizes[p] = 0.5;
     add("halving " + name, [&](std::size_t k) { return changed(tried, machines, k, sizes); });
     if (std::ranges::all_of(slots, [&](std::size_t p) { return means[p] == 0.0; })) continue;
+    // Clang 14 captures no structured binding, hence the second name.
     add("removing the means of " + name,
         [&, &of_name = slots](std::size_t k) { return without_means_of(of_name, means, tried, k); });
   }

@@ -24,7 +24,8 @@ inline monte_carlo::Result& monte_carlo_in(StoredResult& result) { return found_
 inline coupling::Result& coupling_in(StoredResult& result) { return found_in<coupling::Result>(result); }
 
 /// Sets the global indices [responses x errors] of a sensitivity result, with intervals of zero width and no change at
-/// a tenth of the sizes. The result has one pose, without solves. Precondition: it has its errors and responses.
+/// a tenth of the sizes. If the result has no counts of solves, it gets one pose without solves. Precondition: the
+/// result has its errors and responses.
 inline void set_indices(StoredResult& result, const std::vector<double>& indices) {
   sensitivity::Result& found = sensitivity_in(result);
   const std::array lengths{result.responses.size(), result.factors.size()};
@@ -34,7 +35,7 @@ inline void set_indices(StoredResult& result, const std::vector<double>& indices
   }
   found.rounding = Array<double, axis::Response>({lengths[0]});
   found.index_change = sensitivity::Result::Indices(lengths);
-  found.solves = Array<SolveCounts, axis::Factor, axis::Pose>({lengths[1], 1});
+  if (found.solves.all().empty()) found.solves = Array<SolveCounts, axis::Factor, axis::Pose>({lengths[1], 1});
 }
 
 /// The tables of a result. ranked_by: the response that ranks the errors.
